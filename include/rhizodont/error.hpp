@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rhizodont {
+
+/// Why a function gave up; the value is the exit code of the command-line program.
+enum class ErrorCode : int {
+  wrong_usage = 2,     ///< the call itself is off: an unknown option, a value out of its range
+  unusable_input = 3,  ///< the file or the mesh in it cannot be used
+  no_result = 4,       ///< no result was found that keeps the promises
+  internal = 5,        ///< a fault of the program
+};
+
+/// Base of all exceptions that the library throws.
+/// `what()` is one sentence that a dental technician understands; `elements()` are the ids concerned
+/// (vertices, triangles, lines: the sentence says which), possibly none.
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorCode code, const std::string& sentence, std::vector<std::int64_t> elements = {})
+      : std::runtime_error(sentence), code_(code), elements_(std::move(elements)) {}
+
+  ErrorCode code() const noexcept { return code_; }
+  const std::vector<std::int64_t>& elements() const noexcept { return elements_; }
+
+ private:
+  ErrorCode code_;
+  std::vector<std::int64_t> elements_;
+};
+
+/// An option or argument is out of its range.
+class UsageError : public Error {
+ public:
+  explicit UsageError(const std::string& sentence) : Error(ErrorCode::wrong_usage, sentence) {}
+};
+
+/// The input cannot be used: unreadable, damaged, or not a crown.
+class InputError : public Error {
+ public:
+  explicit InputError(const std::string& sentence, std::vector<std::int64_t> elements = {})
+      : Error(ErrorCode::unusable_input, sentence, std::move(elements)) {}
+};
+
+/// The input was understood, but no result keeps the promises.
+class NoResultError : public Error {
+ public:
+  explicit NoResultError(const std::string& sentence, std::vector<std::int64_t> elements = {})
+      : Error(ErrorCode::no_result, sentence, std::move(elements)) {}
+};
+
+}  // namespace rhizodont
