@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "rhizodont/mesh.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace rhizodont {
+
+/// Number type of a per-vertex attribute in a file.
+enum class AttributeType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+/// One number per vertex. `values` holds what `type` can store exactly.
+struct VertexAttribute {
+  AttributeType type = AttributeType::float32;
+  std::vector<double> values;
+};
+
+/// Name of the attribute that says where a vertex comes from (uint8, the values of VertexSource).
+inline constexpr const char* source_attribute = "source";
+
+/// Where a vertex of a completed tooth comes from.
+enum class VertexSource : std::uint8_t {
+  scan = 0,        ///< given with the crown, untouched
+  transition = 1,  ///< new, between crown and root
+  predicted = 2,   ///< new, not seen by any scanner
+};
+
+/// A mesh as it stands in a file.
+struct MeshFile {
+  TriangleMesh mesh;
+  std::map<std::string, VertexAttribute> vertex_attributes;  ///< written to PLY only
+  std::vector<std::string> comments;                         ///< PLY and OBJ, one line each
+  /// All coordinates are floats as they are. Set by `load_mesh`; `save_mesh` looks at the mesh itself.
+  bool coordinates_fit_float = true;
+  /// Triangles of the file left out because two corners are the same vertex (STL: the same bits); by their place in the
+  /// file.
+  std::vector<std::int64_t> dropped_triangles;
+};
+
+/// True if every coordinate, rounded to float, is still the same number.
+bool coordinates_fit_float(const TriangleMesh& mesh);
+
+/// Reads .stl (binary, ASCII), .ply (ASCII, binary of both byte orders), .obj, .off, .vtp (ASCII, base64, raw, zlib) by
+/// extension, upper or lower case. Order of vertices and triangles is that of the file; STL vertices are merged where
+/// their bits are equal (-0 = +0) and numbered by first appearance. Polygons are cut into a fan from their first
+/// corner. Throws InputError, with the line, the element or the byte concerned, if the file is missing, empty, damaged,
+/// cut off, holds no triangle, a coordinate that is not a number, or an index that is not a vertex; UsageError for
+/// another extension.
+MeshFile load_mesh(const std::filesystem::path& path);
+
+/// Writes .ply (binary), .stl (binary), .obj or .glb by extension. Coordinates that all fit float are written as float
+/// bits, otherwise as double (PLY) or with all digits (OBJ). The file appears complete or not at all: it is written
+/// beside its place under another name and then renamed. Throws UsageError for another extension, for STL or GLB of a
+/// mesh whose coordinates do not fit float; InputError for an invalid mesh (index out of range, not finite, attribute
+/// of another length) or if the file cannot be written.
+void save_mesh(const std::filesystem::path& path, const MeshFile& file);
+
+/// Writes bytes to a file that appears complete or not at all. Throws InputError if it cannot be written.
+void write_file_atomically(const std::filesystem::path& path, const std::string& bytes);
+
+}  // namespace rhizodont

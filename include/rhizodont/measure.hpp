@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "rhizodont/mesh.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rhizodont {
+
+/// Figures of one mesh.
+struct MeshMeasures {
+  // Triangle quality over all triangles (paper, 4.3); degrees.
+  double q_avg = 0, q_min = 0, theta_avg = 0, theta_min = 0, theta_max = 0, percent_below_30 = 0;
+
+  // Topology.
+  std::int64_t vertices = 0;  ///< in use
+  std::int64_t edges = 0, triangles = 0;
+  std::int64_t unreferenced_vertices = 0, duplicate_vertices = 0, duplicate_triangles = 0, degenerate_triangles = 0;
+  std::int64_t border_edges = 0, non_manifold_edges = 0, misoriented_edges = 0, non_manifold_vertices = 0;
+  std::int64_t self_intersections = 0;  ///< pairs of triangles
+  int components = 0, border_loops = 0, euler_number = 0;
+  std::optional<int> genus;          ///< of a closed oriented manifold
+  std::vector<std::string> defects;  ///< one sentence each
+
+  // Sizes in mm, mm^2, mm^3.
+  double volume = 0;  ///< signed; only where the mesh is closed, else 0
+  double area = 0;
+  std::array<double, 3> lowest{}, highest{};  ///< corners of the bounding box
+  double diagonal = 0;
+  double edge_min = 0, edge_mean = 0, edge_max = 0;
+};
+
+/// Throws InputError for a mesh without triangles, with an index out of range, a repeated index or a coordinate that is
+/// not a number.
+MeshMeasures measure(const TriangleMesh& mesh);
+
+}  // namespace rhizodont

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "rhizodont/mesh.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace rhizodont {
+
+/// Pairs (lower, higher id) of triangles that meet elsewhere than in the vertices and edges they share by index;
+/// sorted. Decided exactly on the given double coordinates. Triangles that only touch count as meeting; so do triangles
+/// with the same three vertices and neighbours folded onto each other in one plane. Works on any soup. A triangle
+/// without area counts as the segment it covers, and is not tested against triangles with which it shares a vertex.
+/// Throws InputError for non-finite vertices or indices out of range.
+std::vector<std::pair<int, int>> self_intersecting_triangles(const TriangleMesh& mesh);
+
+}  // namespace rhizodont
