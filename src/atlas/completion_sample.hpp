@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "atlas/tooth_family.hpp"
+#include "completion/frame.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace rhizodont {
+
+/// How training samples are made; the defaults are what the shipped weights were trained on.
+struct CompletionSampleOptions {
+  std::size_t input_points = 1024;        ///< points on the cropped crown, >= 1
+  std::size_t target_points = 4096;       ///< points on the whole tooth, >= 1
+  int type = -1;                          ///< tooth type 0..15, or -1: drawn anew for each sample
+  double paper_crop_share = 0.15;         ///< share of crops at 1/2 .. 1/8 of the tooth's length, 0..1; the rest is cut
+                                          ///< near the cemento-enamel junction as scans are
+  double scanner_noise_mm = 0.02;         ///< standard deviation of the noise on the input points, >= 0
+  double gap_probability = 0.3;           ///< share of crowns with missing interproximal surface, 0..1
+  double rotation_jitter_radians = 0.15;  ///< half width of the error of the rotation about the growth axis, >= 0
+};
+
+/// One training pair: what inference would see of a crown, and the tooth it belongs to.
+/// All coordinates are canonical: growth axis +z (root to crown), left side, origin at the crown's area-weighted
+/// centroid, unit 12 mm. Point arrays are row-major (x, y, z of point 0, x, y, z of point 1, ...).
+struct CompletionSample {
+  std::vector<float> input;                 ///< input_points x 3, on the cropped crown, in random order
+  std::vector<float> target;                ///< target_points x 3, uniform by area on the whole tooth, in random order
+  std::vector<float> target_normals;        ///< target_points x 3, unit length, outward
+  std::vector<std::uint8_t> target_root;    ///< target_points; 1 where the point lies outside the crop (not seen)
+  std::vector<std::uint8_t> target_cement;  ///< target_points; 1 where the point lies on cementum (below the junction)
+  int type = 0;                             ///< tooth type 0..15
+  CanonicalFrame frame;                     ///< from the generated tooth's millimetres to the canonical pose
+  double root_length_mm = 0;   ///< lowest border point of the crop to the furthest apex along z, millimetres
+  double crown_height_mm = 0;  ///< extent of the crop along z, millimetres
+  std::vector<Point> apices;   ///< root tips in canonical coordinates, 1 to 3
+};
+
+/// Makes training sample number `seed`: a random tooth of a random type, cropped and disturbed like a scan.
+/// The frame comes from the cropped crown alone, as at inference; its rotation about z is the generator's own plus a
+/// jitter that stands for the error of registration. Depends on the seed and options alone, so that any thread may make
+/// any sample; seeds below `validation_seed_offset` are for training, the others for validation.
+/// Throws NoResultError if no sound tooth came out of 20 draws (not seen in practice), UsageError for bad options.
+CompletionSample make_completion_sample(const ToothFamilies& families, std::uint64_t seed,
+                                        const CompletionSampleOptions& options = {});
+
+/// Samples with seeds from here on are never trained on.
+inline constexpr std::uint64_t validation_seed_offset = std::uint64_t{1} << 40;
+
+}  // namespace rhizodont
