@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Vertex normals: G. Thuermer, C. Wuethrich, "Computing vertex normals from polygonal facets", JGT 3(1), 1998.
+#include "mesh/geometry.hpp"
+
+#include "mesh/adjacency.hpp"
+#include "rhizodont/error.hpp"
+
+#include <cmath>
+
+namespace rhizodont {
+namespace {
+
+const Point& corner(const TriangleMesh& mesh, std::size_t triangle, std::size_t i) {
+  return mesh.vertices[static_cast<std::size_t>(mesh.triangles[triangle][i])];
+}
+
+// atan2 stays accurate for needles, where the law of cosines loses all digits.
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+}  // namespace
+
+Eigen::Vector3d triangle_area_vector(const TriangleMesh& mesh, std::size_t triangle) {
+  const Point& a = corner(mesh, triangle, 0);
+  return 0.5 * (corner(mesh, triangle, 1) - a).cross(corner(mesh, triangle, 2) - a);
+}
+
+double triangle_area(const TriangleMesh& mesh, std::size_t triangle) {
+  return triangle_area_vector(mesh, triangle).norm();
+}
+
+Eigen::Vector3d triangle_normal(const TriangleMesh& mesh, std::size_t triangle) {
+  const Eigen::Vector3d area = triangle_area_vector(mesh, triangle);
+  // stableNorm: the product of two short edges must not underflow to "no area"
+  const double length = area.stableNorm();
+  return length > 0 ? Eigen::Vector3d(area / length) : Eigen::Vector3d::Zero();
+}
+
+std::array<double, 3> triangle_angles(const TriangleMesh& mesh, std::size_t triangle) {
+  std::array<double, 3> angles{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Point& p = corner(mesh, triangle, i);
+    angles[i] = angle_between(corner(mesh, triangle, (i + 1) % 3) - p, corner(mesh, triangle, (i + 2) % 3) - p);
+  }
+  return angles;
+}
+
+Eigen::Vector3d area_vector(const TriangleMesh& mesh) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) sum += triangle_area_vector(mesh, t);
+  return sum;
+}
+
+double volume(const TriangleMesh& mesh) {
+  if (mesh.vertices.empty()) return 0;
+  const Point apex = bounding_box(mesh.vertices).center();
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    sum += triangle_area_vector(mesh, t).dot(corner(mesh, t, 0) - apex) / 3;
+  return sum;
+}
+
+double surface_area(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) sum += triangle_area(mesh, t);
+  return sum;
+}
+
+std::vector<Eigen::Vector3d> vertex_normals(const TriangleMesh& mesh) {
+  std::vector<Eigen::Vector3d> normals(mesh.vertices.size(), Eigen::Vector3d::Zero());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Eigen::Vector3d normal = triangle_normal(mesh, t);
+    const std::array<double, 3> angles = triangle_angles(mesh, t);
+    for (std::size_t i = 0; i < 3; ++i) normals[static_cast<std::size_t>(mesh.triangles[t][i])] += angles[i] * normal;
+  }
+  for (Eigen::Vector3d& normal : normals) {
+    const double length = normal.norm();
+    if (length > 0) normal /= length;
+  }
+  return normals;
+}
+
+Eigen::AlignedBox3d bounding_box(const std::vector<Point>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Point& point : points) box.extend(point);
+  return box;
+}
+
+double mean_edge_length(const TriangleMesh& mesh) {
+  const EdgeTable table = edge_table(mesh);
+  if (table.size() == 0) return 0;
+  double sum = 0;
+  for (const auto& [a, b] : table.vertices)
+    sum += (mesh.vertices[static_cast<std::size_t>(a)] - mesh.vertices[static_cast<std::size_t>(b)]).norm();
+  return sum / static_cast<double>(table.size());
+}
+
+Point area_centroid(const TriangleMesh& mesh) {
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  double area = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const double part = triangle_area(mesh, t);
+    area += part;
+    moment += part / 3 * (corner(mesh, t, 0) + corner(mesh, t, 1) + corner(mesh, t, 2));
+  }
+  if (!(area > 0)) throw InputError("the mesh has no surface area");
+  return moment / area;
+}
+
+}  // namespace rhizodont
