@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The dual of the restricted Voronoi diagram follows "Completing Dental Models While Preserving Crown Geometry and
+// Meshing Topology", section 3.5. There the dual is the result; here it only proposes root triangles: the crown is
+// taken from the input, so that it is exact whatever the dual did to it.
+
+#include "fusion/restore.hpp"
+
+#include "fusion/fill_holes.hpp"
+#include "mesh/adjacency.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/self_intersection.hpp"
+#include "rhizodont/error.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <set>
+
+namespace rhizodont {
+namespace {
+
+using HalfEdge = std::pair<int, int>;
+
+std::array<HalfEdge, 3> half_edges(const Triangle& t) {
+  return {HalfEdge{t[0], t[1]}, HalfEdge{t[1], t[2]}, HalfEdge{t[2], t[0]}};
+}
+
+/// The root's triangles beside the crown, and how they are taken back until the two fit.
+class RootPatch {
+ public:
+  RootPatch(const TriangleMesh& crown, const Joining& joining) : crown_(crown), sites_(joining.sites) {
+    for (const Triangle& t : crown.triangles)
+      for (const HalfEdge& h : half_edges(t)) crown_half_edges_.insert(h);
+    const auto loops = border_loops(crown);
+    outer_ = *std::max_element(loops.begin(), loops.end(),
+                               [&](const auto& x, const auto& y) { return loop_length(x) < loop_length(y); });
+    const std::set<int> outer(outer_.begin(), outer_.end());
+    const int first_root = joining.crown_vertices + joining.steiner_points;
+    for (const Triangle& t : joining.triangles) {
+      const bool has_root = std::any_of(t.begin(), t.end(), [&](int v) { return v >= first_root; });
+      const bool fits = std::all_of(t.begin(), t.end(), [&](int v) { return v >= first_root || outer.contains(v); });
+      if (has_root && fits && fits_crown(t)) triangles_.push_back(t);
+    }
+  }
+
+  /// Takes triangles back until crown and patch together are a manifold with separate, simple border loops.
+  void make_manifold() {
+    while (remove_crowded_edges() || keep_largest_component() || remove_pinched_vertices()) {
+    }
+    if (triangles_.empty()) throw NoResultError("The predicted root and the crown do not meet.");
+  }
+
+  void remove_around(const std::set<int>& vertices) {
+    std::erase_if(triangles_, [&](const Triangle& t) {
+      return std::any_of(t.begin(), t.end(), [&](int v) { return vertices.contains(v); });
+    });
+  }
+
+  /// Joins a patch that does not touch the crown by two triangles between the nearest border edges of both.
+  void bridge_to_crown() {
+    std::vector<HalfEdge> open;
+    for (const HalfEdge& h : open_half_edges()) {
+      if (h.first < crown_vertices() && h.second < crown_vertices()) continue;
+      open.push_back(h);
+    }
+    for (const Triangle& t : triangles_)
+      for (const auto& [a, b] : half_edges(t))
+        if (crown_half_edges_.contains({b, a})) return;
+    double best = std::numeric_limits<double>::max();
+    HalfEdge ours, crowns;
+    for (std::size_t i = 0; i < outer_.size(); ++i) {
+      const HalfEdge c{outer_[i], outer_[(i + 1) % outer_.size()]};
+      for (const HalfEdge& r : open) {
+        const double d = distance(c.first, r.second) + distance(c.second, r.first);
+        if (d >= best) continue;
+        best = d;
+        ours = r;
+        crowns = c;
+      }
+    }
+    triangles_.push_back({crowns.second, crowns.first, ours.second});
+    triangles_.push_back({crowns.second, ours.second, ours.first});
+  }
+
+  /// Crown and patch in one mesh: crown vertices and triangles first.
+  TriangleMesh joined() const {
+    TriangleMesh mesh = crown_;
+    std::map<int, int> number;
+    for (Triangle t : triangles_) {
+      for (std::int32_t& v : t) {
+        if (v < crown_vertices()) continue;
+        const auto [place, is_new] = number.try_emplace(v, static_cast<int>(mesh.vertices.size()));
+        if (is_new) mesh.vertices.push_back(sites_[static_cast<std::size_t>(v)]);
+        v = place->second;
+      }
+      mesh.triangles.push_back(t);
+    }
+    return mesh;
+  }
+
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+
+  /// The site behind each vertex of `joined()`.
+  std::vector<int> joined_sites() const {
+    std::vector<int> sites(crown_.vertices.size());
+    for (std::size_t v = 0; v < sites.size(); ++v) sites[v] = static_cast<int>(v);
+    std::set<int> seen;
+    for (const Triangle& t : triangles_)
+      for (const int v : t)
+        if (v >= crown_vertices() && seen.insert(v).second) sites.push_back(v);
+    return sites;
+  }
+
+ private:
+  int crown_vertices() const { return static_cast<int>(crown_.vertices.size()); }
+
+  double distance(int a, int b) const {
+    return (sites_[static_cast<std::size_t>(a)] - sites_[static_cast<std::size_t>(b)]).norm();
+  }
+
+  double loop_length(const std::vector<int>& loop) const {
+    double length = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) length += distance(loop[i], loop[(i + 1) % loop.size()]);
+    return length;
+  }
+
+  /// No edge of the triangle repeats a half-edge of the crown or lies inside the crown.
+  bool fits_crown(const Triangle& t) const {
+    return std::none_of(half_edges(t).begin(), half_edges(t).end(),
+                        [&](const HalfEdge& h) { return crown_half_edges_.contains(h); });
+  }
+
+  /// Removes triangles at half-edges that stand twice; true if any was removed.
+  bool remove_crowded_edges() {
+    std::map<HalfEdge, int> count;
+    for (const Triangle& t : triangles_)
+      for (const HalfEdge& h : half_edges(t)) ++count[h];
+    const std::size_t before = triangles_.size();
+    std::erase_if(triangles_, [&](const Triangle& t) {
+      const auto edges = half_edges(t);
+      return std::any_of(edges.begin(), edges.end(), [&](const HalfEdge& h) { return count[h] > 1; });
+    });
+    return triangles_.size() != before;
+  }
+
+  bool keep_largest_component() {
+    if (triangles_.empty()) return false;
+    TriangleMesh patch{sites_, triangles_};
+    const ConnectedComponents components = connected_components(patch);
+    if (components.count <= 1) return false;
+    std::vector<int> size(static_cast<std::size_t>(components.count), 0);
+    for (const int c : components.of_triangle) ++size[static_cast<std::size_t>(c)];
+    const int largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+    std::vector<Triangle> kept;
+    for (std::size_t t = 0; t < triangles_.size(); ++t)
+      if (components.of_triangle[t] == largest) kept.push_back(triangles_[t]);
+    triangles_ = std::move(kept);
+    return true;
+  }
+
+  /// Half-edges of crown and patch without a triangle on their other side.
+  std::vector<HalfEdge> open_half_edges() const {
+    std::set<HalfEdge> all(crown_half_edges_);
+    for (const Triangle& t : triangles_)
+      for (const HalfEdge& h : half_edges(t)) all.insert(h);
+    std::vector<HalfEdge> open;
+    for (const HalfEdge& h : all)
+      if (!all.contains({h.second, h.first})) open.push_back(h);
+    return open;
+  }
+
+  /// Removes the patch around vertices where two gaps meet, or around which its triangles do not form one fan.
+  bool remove_pinched_vertices() {
+    std::map<int, int> leaving;
+    for (const HalfEdge& h : open_half_edges()) ++leaving[h.first];
+    std::set<int> pinched;
+    for (const auto& [v, count] : leaving)
+      if (count > 1) pinched.insert(v);
+    for (const int v : vertices_with_several_fans()) pinched.insert(v);
+    const std::size_t before = triangles_.size();
+    remove_around(pinched);
+    return triangles_.size() != before;
+  }
+
+  /// Vertices of the patch alone whose triangles there form more than one fan while no gap explains it.
+  std::vector<int> vertices_with_several_fans() const {
+    std::map<int, std::map<int, int>> link;  // per vertex: from -> to around it
+    const auto add = [&](const Triangle& t) {
+      for (std::size_t i = 0; i < 3; ++i) link[t[i]][t[(i + 1) % 3]] = t[(i + 2) % 3];
+    };
+    std::set<int> of_patch;
+    for (const Triangle& t : triangles_) {
+      add(t);
+      of_patch.insert(t.begin(), t.end());
+    }
+    for (const Triangle& t : crown_.triangles)
+      if (std::any_of(t.begin(), t.end(), [&](int v) { return of_patch.contains(v); })) add(t);
+    std::vector<int> found;
+    for (const int v : of_patch) {
+      const auto& next = link[v];
+      std::set<int> targets;
+      for (const auto& [from, to] : next) targets.insert(to);
+      auto start = next.begin();
+      for (auto it = next.begin(); it != next.end(); ++it)
+        if (!targets.contains(it->first)) start = it;
+      std::size_t steps = 0;
+      for (auto it = start; it != next.end() && steps <= next.size();) {
+        ++steps;
+        it = next.find(it->second);
+        if (it == start) break;
+      }
+      if (steps != next.size()) found.push_back(v);
+    }
+    return found;
+  }
+
+  const TriangleMesh& crown_;
+  const std::vector<Point>& sites_;
+  std::set<HalfEdge> crown_half_edges_;
+  std::vector<int> outer_;  // the border loop that the root continues
+  std::vector<Triangle> triangles_;
+};
+
+/// Sites around which the patch is to be taken back: those of the new triangles that cut others.
+std::set<int> cutting_sites(const TriangleMesh& mesh, std::size_t crown_triangles, const std::vector<int>& sites,
+                            const std::vector<std::pair<int, int>>& pairs) {
+  std::set<int> result;
+  for (const auto& [a, b] : pairs)
+    for (const int t : {a, b}) {
+      if (static_cast<std::size_t>(t) < crown_triangles) continue;
+      for (const int v : mesh.triangles[static_cast<std::size_t>(t)]) result.insert(sites[static_cast<std::size_t>(v)]);
+    }
+  return result;
+}
+
+}  // namespace
+
+RestoredTooth restore_crown(const TriangleMesh& crown, const Joining& joining, const RestoreOptions& options) {
+  RootPatch patch(crown, joining);
+  for (int round = 0;; ++round) {
+    patch.make_manifold();
+    patch.bridge_to_crown();
+    const TriangleMesh open = patch.joined();
+    const FilledMesh filled = fill_holes(open);
+    const auto cuts = self_intersecting_triangles(filled.mesh);
+    if (cuts.empty()) {
+      RestoredTooth tooth;
+      tooth.mesh = filled.mesh;
+      tooth.crown_vertices = static_cast<int>(crown.vertices.size());
+      tooth.crown_triangles = static_cast<int>(crown.triangles.size());
+      tooth.triangles_brought_back = tooth.crown_triangles - joining.crown_triangles_direct;
+      tooth.triangles_filled = static_cast<int>(filled.mesh.triangles.size() - open.triangles.size());
+      tooth.holes_filled = filled.holes;
+      return tooth;
+    }
+    if (round >= options.rounds) {
+      std::vector<std::int64_t> ids;
+      for (const auto& [a, b] : cuts) ids.insert(ids.end(), {a, b});
+      throw NoResultError("The root could not be joined to the crown without cutting it (pairs of triangles).", ids);
+    }
+    patch.remove_around(cutting_sites(filled.mesh, crown.triangles.size(), patch.joined_sites(), cuts));
+  }
+}
+
+}  // namespace rhizodont
