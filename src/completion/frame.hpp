@@ -59,8 +59,6 @@ void save_atlas(const Atlas& atlas, const std::filesystem::path& file);
 /// Unit growth axis of an open crown, from root to crown: the normalised sum of its area vectors, which depends on its
 /// border alone. Throws InputError if the sum vanishes (closed surface, or nothing to go by).
 Eigen::Vector3d growth_axis(const TriangleMesh& open_crown);
-/// Area-weighted centroid of a surface, millimetres. Throws InputError if it has no area.
-Point area_centroid(const TriangleMesh& mesh);
 
 /// How a mean crown lies on a crown.
 struct RigidFit {

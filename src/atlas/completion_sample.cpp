@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Training pairs for point cloud completion: "Completing Dental Models While Preserving Crown Geometry and Meshing
+// Topology", 3.3, with crops, noise and frames as they are at inference.
+#include "atlas/completion_sample.hpp"
+
+#include "atlas/crown_crop.hpp"
+#include "atlas/random_stream.hpp"
+#include "mesh/geometry.hpp"
+#include "rhizodont/error.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rhizodont {
+namespace {
+
+void check(const CompletionSampleOptions& options) {
+  const auto share = [](double x) { return x >= 0 && x <= 1; };
+  if (options.input_points == 0 || options.target_points == 0)
+    throw UsageError("A training sample needs at least one input and one target point.");
+  if (options.type < -1 || options.type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
+  if (!share(options.paper_crop_share) || !share(options.gap_probability))
+    throw UsageError("Shares of training samples lie between 0 and 1.");
+  if (!(options.scanner_noise_mm >= 0) || !(options.rotation_jitter_radians >= 0))
+    throw UsageError("Noise and jitter of training samples cannot be negative.");
+}
+
+struct SurfacePoint {
+  std::size_t triangle;
+  double b0, b1, b2;
+
+  template <typename Values>
+  auto mix(const TriangleMesh& mesh, const Values& values) const {
+    const Triangle& t = mesh.triangles[triangle];
+    return (b0 * values[static_cast<std::size_t>(t[0])] + b1 * values[static_cast<std::size_t>(t[1])] +
+            b2 * values[static_cast<std::size_t>(t[2])])
+        .eval();
+  }
+};
+
+// Uniform by area, one point in each of `count` equal shares of the area, then shuffled: more even than independent
+// points, and no batch sees an order.
+std::vector<SurfacePoint> sample_evenly(const TriangleMesh& mesh, std::size_t count, RandomStream& random) {
+  std::vector<double> cumulative;
+  double total = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) cumulative.push_back(total += triangle_area(mesh, t));
+  std::vector<SurfacePoint> points;
+  points.reserve(count);
+  std::size_t t = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double at = total * (static_cast<double>(i) + random.uniform()) / static_cast<double>(count);
+    while (t + 1 < cumulative.size() && cumulative[t] < at) ++t;
+    const double root = std::sqrt(random.uniform()), v = random.uniform();
+    points.push_back({t, 1 - root, root * (1 - v), root * v});
+  }
+  for (std::size_t i = count; i > 1; --i) std::swap(points[i - 1], points[random.index(i)]);
+  return points;
+}
+
+void append(std::vector<float>& values, const Eigen::Vector3d& p) {
+  for (int i = 0; i < 3; ++i) values.push_back(static_cast<float>(p[i]));
+}
+
+// Axis and centre from the crop alone; about the axis the family's own frame, turned by a registration error.
+CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn) {
+  CanonicalFrame frame;
+  const Eigen::Quaterniond upright =
+      Eigen::Quaterniond::FromTwoVectors(growth_axis(crown), Eigen::Vector3d::UnitZ().eval());
+  frame.rotation = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix() * upright.toRotationMatrix();
+  frame.centre = area_centroid(crown);
+  return frame;
+}
+
+}  // namespace
+
+CompletionSample make_completion_sample(const ToothFamilies& families, std::uint64_t seed,
+                                        const CompletionSampleOptions& options) {
+  check(options);
+  RandomStream random(seed, 100);
+  CompletionSample sample;
+  sample.type = static_cast<int>(random.index(tooth_type_count));
+  if (options.type >= 0) sample.type = options.type;
+  const SyntheticTooth tooth = generate_tooth(families, sample.type, random.bits());
+  const CroppedCrown crop = draw_cropped_crown(tooth, options.paper_crop_share, options.gap_probability, random);
+  const double jitter = options.rotation_jitter_radians;
+  sample.frame = frame_of_crop(crop.mesh, random.uniform(-jitter, jitter));
+
+  sample.input.reserve(3 * options.input_points);
+  const double noise = options.scanner_noise_mm;
+  for (const SurfacePoint& s : sample_evenly(crop.mesh, options.input_points, random)) {
+    const Point p = s.mix(crop.mesh, crop.mesh.vertices);
+    const double x = random.normal(), y = random.normal(), z = random.normal();
+    append(sample.input, sample.frame.to_canonical(p + noise * Eigen::Vector3d(x, y, z)));
+  }
+
+  const std::vector<Eigen::Vector3d> normals = vertex_normals(tooth.mesh);
+  sample.target.reserve(3 * options.target_points);
+  sample.target_normals.reserve(3 * options.target_points);
+  for (const SurfacePoint& s : sample_evenly(tooth.mesh, options.target_points, random)) {
+    const Point p = s.mix(tooth.mesh, tooth.mesh.vertices);
+    const Eigen::Vector3d normal = s.mix(tooth.mesh, normals).normalized();
+    append(sample.target, sample.frame.to_canonical(p));
+    append(sample.target_normals, sample.frame.direction_to_canonical(normal));
+    sample.target_root.push_back(p.z() > crop.line.height(tooth.junction, p.x(), p.y()) ? 0 : 1);
+    sample.target_cement.push_back(p.z() > tooth.junction(p.x(), p.y()) ? 0 : 1);
+  }
+
+  double low = std::numeric_limits<double>::max(), high = -low, deepest = low;
+  for (const Point& p : crop.mesh.vertices) {
+    const double z = sample.frame.to_canonical(p).z();
+    low = std::min(low, z), high = std::max(high, z);
+  }
+  for (const Point& p : tooth.mesh.vertices) deepest = std::min(deepest, sample.frame.to_canonical(p).z());
+  sample.root_length_mm = (low - deepest) * sample.frame.scale;
+  sample.crown_height_mm = (high - low) * sample.frame.scale;
+  for (const Point& p : tooth.apices) sample.apices.push_back(sample.frame.to_canonical(p));
+  return sample;
+}
+
+}  // namespace rhizodont

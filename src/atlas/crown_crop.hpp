@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "atlas/random_stream.hpp"
+#include "atlas/tooth_family.hpp"
+
+#include <array>
+#include <optional>
+
+namespace rhizodont {
+
+/// Where a crown ends: a height over the tooth's frame that depends on the direction around the axis.
+struct GumLine {
+  double junction_share = 1;                        ///< how much of the junction's own curve it follows
+  double offset_mm = 0;                             ///< above (+, towards the cusps) or below (-) that curve
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  ///< tilt, height per millimetre along x and y
+  std::array<double, 5> wave_mm{};                  ///< amplitudes of 1..5 waves around the tooth
+  std::array<double, 5> wave_phase{};               ///< radians
+  std::array<double, 2> gap_mm{};                   ///< missing surface at the contacts (towards -x and +x)
+  std::array<double, 2> gap_width{0.3, 0.3};        ///< half width of these notches, radians
+
+  /// Height of the line for a position around the axis, millimetres in the tooth's frame.
+  double height(const JunctionHeight& junction, double x, double y) const;
+};
+
+/// How scans end: 85 in 100 near the junction, with waves, papillae and tilt; the rest at 1/2 to 1/8 of the tooth's
+/// length (paper, 3.3). `paper_share` is that rest, `gap_probability` the share with notches at the contacts.
+GumLine draw_gum_line(const SyntheticTooth& tooth, double paper_share, double gap_probability, RandomStream& random);
+
+/// The part of the tooth above the gum line, cut through the triangles; the piece that holds the highest vertex.
+/// Nothing if that piece is not a disc (one border loop, no handle).
+std::optional<TriangleMesh> crop_crown(const SyntheticTooth& tooth, const GumLine& line);
+
+/// Draws gum lines until one leaves a disc, raising it or starting anew. Throws NoResultError after 30 attempts.
+struct CroppedCrown {
+  TriangleMesh mesh;
+  GumLine line;
+};
+CroppedCrown draw_cropped_crown(const SyntheticTooth& tooth, double paper_share, double gap_probability,
+                                RandomStream& random);
+
+}  // namespace rhizodont

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Reads the templates and the table of mean dimensions (Wheeler; Ash and Nelson, "Wheeler's Dental Anatomy").
+#include "atlas/tooth_family.hpp"
+#include "atlas/tooth_template.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <fstream>
+#include <numeric>
+#include <sstream>
+#include <string>
+
+namespace rhizodont {
+namespace {
+
+double largest_number(const std::string& text) {
+  double largest = 0;
+  for (std::size_t i = 0; i < text.size();) {
+    if (std::isdigit(static_cast<unsigned char>(text[i])) == 0) {
+      ++i;
+      continue;
+    }
+    std::size_t used = 0;
+    largest = std::max(largest, std::stod(text.substr(i), &used));
+    i += used;
+  }
+  return largest;
+}
+
+std::array<ToothDimensions, tooth_type_count> read_dimensions(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  if (!stream) throw InputError("The table of tooth dimensions " + file.string() + " cannot be read.");
+  std::array<ToothDimensions, tooth_type_count> all{};
+  std::string line;
+  std::getline(stream, line);
+  int rows = 0;
+  while (std::getline(stream, line)) {
+    std::vector<std::string> fields;
+    std::stringstream text(line);
+    for (std::string field; std::getline(text, field, ',');) fields.push_back(field);
+    if (fields.size() < 9) continue;
+    const auto slash = fields[1].find('/');
+    if (slash == std::string::npos) throw InputError("A row of " + file.string() + " has no FDI pair such as 11/21.");
+    const int type = tooth_type_of_fdi(std::atoi(fields[1].c_str() + slash + 1));
+    ToothDimensions& d = all[static_cast<std::size_t>(type)];
+    d.crown_height = largest_number(fields[3]);
+    d.root_length = largest_number(fields[4]);
+    d.crown_mesiodistal = largest_number(fields[5]);
+    d.crown_buccolingual = largest_number(fields[7]);
+    if (std::min({d.crown_height, d.root_length, d.crown_mesiodistal, d.crown_buccolingual}) <= 0)
+      throw InputError("A dimension is missing in " + file.string() + " for " + fields[0] + ".");
+    ++rows;
+  }
+  if (rows != tooth_type_count) throw InputError(file.string() + " does not have one row for each of the 16 teeth.");
+  return all;
+}
+
+// The files stand in one mouth: y up, z to the front, x to the patient's left. The arch runs through the crowns.
+Eigen::Vector3d crown_centre(const TriangleMesh& mesh, const std::vector<std::uint8_t>& crown) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (std::size_t v = 0; v < crown.size(); ++v) {
+    if (crown[v] == 1) sum += mesh.vertices[v], count += 1;
+  }
+  return sum / count;
+}
+
+// Outward direction of the quarter of an ellipse that the arch resembles: from a point a little before its back end.
+Eigen::Vector3d buccal_direction(const std::vector<Eigen::Vector3d>& arch, std::size_t i) {
+  const Eigen::Vector3d before = i == 0 ? Eigen::Vector3d(-arch[1].x(), arch[1].y(), arch[1].z()) : arch[i - 1];
+  const Eigen::Vector3d after = i + 1 < arch.size() ? arch[i + 1] : arch[i];
+  Eigen::Vector3d along = after - before;  // towards the back of the left side
+  along.y() = 0;
+  Eigen::Vector3d outward(-along.z(), 0, along.x());
+  return outward.normalized();
+}
+
+}  // namespace
+
+ToothFamilies load_tooth_families(const std::filesystem::path& folder, const FamilyLoadOptions& options) {
+  if (options.vertices < 500) throw UsageError("A template needs at least 500 vertices.");
+  constexpr double usual_crown_share = 0.38;
+  ToothFamilies families;
+  families.dimensions = read_dimensions(folder / "anatomy.csv");
+  std::array<MeshFile, tooth_type_count> files;
+  std::array<std::vector<std::uint8_t>, tooth_type_count> crowns;
+  std::vector<Eigen::Vector3d> centres(tooth_type_count);
+  tbb::parallel_for(0, tooth_type_count, [&](int type) {
+    const auto t = static_cast<std::size_t>(type);
+    const int fdi = fdi_of_type(type, false);
+    files[t] = load_mesh(folder / "templates" / ("tooth_" + std::to_string(fdi) + ".ply"));
+    const auto attribute = files[t].vertex_attributes.find("crown");
+    crowns[t] = crown_labels(
+        files[t].mesh, attribute == files[t].vertex_attributes.end() ? std::vector<double>{} : attribute->second.values,
+        usual_crown_share);
+    centres[t] = crown_centre(files[t].mesh, crowns[t]);
+  });
+
+  std::vector<int> wanted = options.types;
+  if (wanted.empty()) {
+    wanted.resize(tooth_type_count);
+    std::iota(wanted.begin(), wanted.end(), 0);
+  }
+  for (int type : wanted)
+    if (type < 0 || type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
+  tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
+    const int type = wanted[i];
+    const auto t = static_cast<std::size_t>(type);
+    // From the front to the back by position: neighbours in the file need not be neighbours in the mouth.
+    std::vector<Eigen::Vector3d> arch(centres.begin() + (type < 8 ? 0 : 8), centres.begin() + (type < 8 ? 8 : 16));
+    std::sort(arch.begin(), arch.end(), [](const auto& a, const auto& b) { return a.z() - a.x() > b.z() - b.x(); });
+    const auto at = std::find(arch.begin(), arch.end(), centres[t]) - arch.begin();
+    families.templates[t] = analyse_template(files[t].mesh, crowns[t],
+                                             buccal_direction(arch, static_cast<std::size_t>(at)), options.vertices);
+  });
+  return families;
+}
+
+}  // namespace rhizodont
