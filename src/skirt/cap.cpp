@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// S. Katz and A. Tal, "Hierarchical mesh decomposition using fuzzy clustering and cuts", ACM Transactions on Graphics
+//   22(3), 2003: boundaries between regions of a mesh as minimum cuts along bent edges.
+
+#include "skirt/cap.hpp"
+
+#include "mesh/adjacency.hpp"
+#include "mesh/geometry.hpp"
+#include "rhizodont/error.hpp"
+#include "skirt/minimum_cut.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rhizodont {
+namespace {
+
+constexpr const char* no_cap_sentence =
+    "The mesh is closed, and no cap over a crown's base was recognised: give the crown with its base open.";
+
+std::vector<bool> cut_off_cap(const TriangleMesh& mesh, const Eigen::Vector3d& axis, const CapOptions& options) {
+  const TriangleAdjacency adjacency = triangle_adjacency(mesh);
+  const std::size_t n = mesh.triangles.size();
+  std::vector<double> cost_cap(n), cost_crown(n);
+  std::vector<CutEdge> edges;
+  const double sharp = options.ridge_angle * std::numbers::pi / 180;
+  for (std::size_t t = 0; t < n; ++t) {
+    const double area = triangle_area(mesh, t);
+    const double facing = -triangle_normal(mesh, t).dot(axis) - options.facing;
+    cost_crown[t] = area * std::max(facing, 0.0);
+    cost_cap[t] = area * std::max(-facing, 0.0);
+    for (std::size_t e = 0; e < 3; ++e) {
+      const int other = adjacency.neighbours[t][e];
+      if (other < static_cast<int>(t)) continue;
+      const Point& a = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][e])];
+      const Point& b = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][(e + 1) % 3])];
+      const Eigen::Vector3d here = triangle_normal(mesh, t);
+      const Eigen::Vector3d there = triangle_normal(mesh, static_cast<std::size_t>(other));
+      const double turn = std::atan2(here.cross(there).dot((b - a).normalized()), here.dot(there));  // > 0: convex
+      const double ridge = std::max(turn, 0.0) / sharp;
+      edges.push_back({static_cast<int>(t), other, (b - a).norm() * (0.05 + std::exp(-ridge * ridge))});
+    }
+  }
+  return minimum_cut(cost_cap, cost_crown, edges);
+}
+
+/// Leaves only the largest region of the given side, and gives everything it encloses to that side.
+void keep_one_region(const TriangleMesh& mesh, std::vector<bool>& side, bool value) {
+  const TriangleAdjacency adjacency = triangle_adjacency(mesh);
+  std::vector<int> region(side.size(), -1);
+  std::vector<double> area;
+  std::vector<int> stack;
+  for (std::size_t seed = 0; seed < side.size(); ++seed) {
+    if (side[seed] != value || region[seed] >= 0) continue;
+    const int id = static_cast<int>(area.size());
+    area.push_back(0);
+    region[seed] = id;
+    stack.push_back(static_cast<int>(seed));
+    while (!stack.empty()) {
+      const auto t = static_cast<std::size_t>(stack.back());
+      stack.pop_back();
+      area[static_cast<std::size_t>(id)] += triangle_area(mesh, t);
+      for (const int o : adjacency.neighbours[t]) {
+        if (o < 0 || region[static_cast<std::size_t>(o)] >= 0 || side[static_cast<std::size_t>(o)] != value) continue;
+        region[static_cast<std::size_t>(o)] = id;
+        stack.push_back(o);
+      }
+    }
+  }
+  if (area.empty()) return;
+  const int largest = static_cast<int>(std::max_element(area.begin(), area.end()) - area.begin());
+  for (std::size_t t = 0; t < side.size(); ++t)
+    if (side[t] == value && region[t] != largest) side[t] = !value;
+}
+
+/// Area of the convex outline of the vertices seen along the axis.
+double outline_area(const TriangleMesh& mesh, const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d u = axis.unitOrthogonal();
+  const Eigen::Vector3d v = axis.cross(u);
+  std::vector<std::pair<double, double>> points;
+  for (const Point& p : mesh.vertices) points.emplace_back(p.dot(u), p.dot(v));
+  std::sort(points.begin(), points.end());
+  const auto turns_left = [](const auto& a, const auto& b, const auto& c) {
+    return (b.first - a.first) * (c.second - a.second) - (b.second - a.second) * (c.first - a.first) > 0;
+  };
+  // Monotone chain (Andrew 1979): lower outline forwards, upper outline backwards.
+  std::vector<std::pair<double, double>> hull;
+  const auto extend = [&](const auto& p, std::size_t keep) {
+    while (hull.size() > keep && !turns_left(hull[hull.size() - 2], hull.back(), p)) hull.pop_back();
+    hull.push_back(p);
+  };
+  for (const auto& p : points) extend(p, 1);
+  const std::size_t lower = hull.size();
+  for (auto it = points.rbegin() + 1; it != points.rend(); ++it) extend(*it, lower);
+  double twice = 0;
+  for (std::size_t i = 0; i + 1 < hull.size(); ++i)
+    twice += hull[i].first * hull[i + 1].second - hull[i].second * hull[i + 1].first;
+  return 0.5 * twice;
+}
+
+}  // namespace
+
+Cap recognise_cap(const TriangleMesh& closed_crown, const Eigen::Vector3d& growth_axis, const CapOptions& options) {
+  Cap cap;
+  cap.is_cap = cut_off_cap(closed_crown, growth_axis, options);
+  keep_one_region(closed_crown, cap.is_cap, true);
+  keep_one_region(closed_crown, cap.is_cap, false);
+  Eigen::Vector3d vector = Eigen::Vector3d::Zero();
+  double area = 0;
+  for (std::size_t t = 0; t < cap.is_cap.size(); ++t) {
+    if (!cap.is_cap[t]) continue;
+    ++cap.triangles;
+    area += triangle_area(closed_crown, t);
+    vector += triangle_area_vector(closed_crown, t);
+  }
+  if (cap.triangles == 0 || cap.triangles == static_cast<int>(cap.is_cap.size())) throw InputError(no_cap_sentence);
+  cap.flatness = vector.norm() / area;
+  cap.share = -vector.dot(growth_axis) / outline_area(closed_crown, growth_axis);
+  if (cap.flatness < options.least_flatness || cap.share < options.least_share)
+    throw InputError(
+        fmt::format("{} (The flattest region facing the root: flatness {:.2f} of {:.2f}, cross-section "
+                    "{:.2f} of {:.2f}.)",
+                    no_cap_sentence, cap.flatness, options.least_flatness, cap.share, options.least_share));
+  return cap;
+}
+
+}  // namespace rhizodont

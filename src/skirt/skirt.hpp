@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "rhizodont/mesh.hpp"
+
+#include <string>
+#include <vector>
+
+namespace rhizodont {
+
+/// A vertex of the input that the tooth will not have.
+struct DroppedVertex {
+  int vertex = 0;      ///< index in the input
+  std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt"
+};
+
+/// What is left of a crown, with where each element stood before. Order is kept.
+struct KeptCrown {
+  TriangleMesh mesh;
+  std::vector<int> old_vertices;       ///< index in the input per kept vertex, ascending
+  std::vector<int> old_triangles;      ///< likewise for triangles
+  std::vector<DroppedVertex> dropped;  ///< ascending by vertex
+};
+
+/// Reduces a crown to the triangles with a true entry in `keep`, and then as far as needed for its border to be made of
+/// separate simple loops: triangles that hang on the rest by one vertex only go. `reason` is noted for the vertices
+/// that leave with the masked triangles. Throws InputError if nothing is left.
+KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, const std::string& reason);
+
+}  // namespace rhizodont

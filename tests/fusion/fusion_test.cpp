@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "fusion/join.hpp"
+#include "fusion/remesh_band.hpp"
+#include "fusion/restore.hpp"
+#include "fusion/separate.hpp"
+#include "fusion/transition.hpp"
+#include "mesh/adjacency.hpp"
+#include "mesh/diagnosis.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/quality.hpp"
+#include "mesh/self_intersection.hpp"
+#include "mesh/test_meshes.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <functional>
+
+namespace rhizodont {
+namespace {
+
+/// The triangles all of whose vertices satisfy `keep`.
+TriangleMesh part(const TriangleMesh& mesh, const std::function<bool(const Point&)>& keep) {
+  std::vector<bool> mask;
+  for (const Triangle& t : mesh.triangles) {
+    bool all = true;
+    for (const int v : t) all = all && keep(mesh.vertices[static_cast<std::size_t>(v)]);
+    mask.push_back(all);
+  }
+  return submesh(mesh, mask).mesh;
+}
+
+std::vector<Point> root_points(const TriangleMesh& surface, const Separation& separation) {
+  std::vector<Point> points;
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+    if (separation.is_root[v]) points.push_back(surface.vertices[v]);
+  return points;
+}
+
+/// A turned copy of a sphere's triangulation, so that guiding surface and crown share no vertex.
+TriangleMesh turned(TriangleMesh mesh) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.37, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
+  for (Point& p : mesh.vertices) p = turn * p;
+  return mesh;
+}
+
+RestoredTooth complete(const TriangleMesh& crown, const TriangleMesh& surface, const Eigen::Vector3d& axis) {
+  const Separation separation = separate_crown_and_root(surface, crown, axis);
+  const Joining joining = join_crown_and_root(crown, root_points(surface, separation), surface);
+  RestoredTooth tooth = restore_crown(crown, joining);
+  remesh_band(tooth);
+  smooth_transition(tooth);
+  return tooth;
+}
+
+void expect_promises(const TriangleMesh& crown, const RestoredTooth& tooth) {
+  ASSERT_GE(tooth.mesh.vertices.size(), crown.vertices.size());
+  ASSERT_GE(tooth.mesh.triangles.size(), crown.triangles.size());
+  for (std::size_t v = 0; v < crown.vertices.size(); ++v) ASSERT_EQ(tooth.mesh.vertices[v], crown.vertices[v]) << v;
+  for (std::size_t t = 0; t < crown.triangles.size(); ++t) ASSERT_EQ(tooth.mesh.triangles[t], crown.triangles[t]) << t;
+  const Diagnosis diagnosis = diagnose(tooth.mesh);
+  EXPECT_TRUE(diagnosis.border_edges.empty());
+  EXPECT_TRUE(diagnosis.non_manifold_edges.empty());
+  EXPECT_TRUE(diagnosis.non_manifold_vertices.empty());
+  EXPECT_EQ(diagnosis.components, 1);
+  EXPECT_EQ(diagnosis.euler_number, 2);
+  EXPECT_GT(volume(tooth.mesh), 0);
+  EXPECT_TRUE(self_intersecting_triangles(tooth.mesh).empty());
+}
+
+TEST(Fusion, SphereCapBecomesClosedAndKeepsItsTriangles) {
+  const TriangleMesh crown = part(test::sphere(4, 5), [](const Point& p) { return p.z() > 0.3; });
+  const TriangleMesh surface = turned(test::sphere(5, 5));
+  const RestoredTooth tooth = complete(crown, surface, Eigen::Vector3d::UnitZ());
+  expect_promises(crown, tooth);
+  EXPECT_NEAR(volume(tooth.mesh), 4.0 / 3 * M_PI * 125, 10);
+}
+
+TEST(Fusion, CrownWithAnInnerHoleIsFilled) {
+  const TriangleMesh crown =
+      part(test::sphere(4, 5), [](const Point& p) { return p.z() > 0.3 && (p - Point(3, 0, 4)).norm() > 1.2; });
+  ASSERT_EQ(border_loops(crown).size(), 2U);
+  expect_promises(crown, complete(crown, turned(test::sphere(5, 5)), Eigen::Vector3d::UnitZ()));
+}
+
+TEST(Fusion, RaggedBorder) {
+  const TriangleMesh crown = part(
+      test::sphere(4, 5), [](const Point& p) { return p.z() > 0.4 + 0.8 * std::cos(9 * std::atan2(p.y(), p.x())); });
+  expect_promises(crown, complete(crown, turned(test::sphere(5, 5)), Eigen::Vector3d::UnitZ()));
+}
+
+TEST(Fusion, ClosedCrownIsRefused) {
+  const TriangleMesh ball = test::sphere(3, 5);
+  EXPECT_THROW(separate_crown_and_root(ball, ball, Eigen::Vector3d::UnitZ()), InputError);
+}
+
+TEST(Fusion, ValidationCrownsOnTheirOwnTeeth) {
+  const std::filesystem::path folder = std::filesystem::path(RHIZODONT_SOURCE_DIR) / "../shared/data/validation";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no validation teeth at " << folder;
+  for (const int fdi : {31, 33, 36, 45}) {
+    const TriangleMesh crown = load_mesh(folder / ("crown_" + std::to_string(fdi) + ".ply")).mesh;
+    TriangleMesh surface = load_mesh(folder / ("tooth_" + std::to_string(fdi) + ".ply")).mesh;
+    // A guiding surface never meets the crown's vertices exactly.
+    for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+      surface.vertices[v] += 0.01 * Eigen::Vector3d(std::sin(3.0 * v), std::sin(5.0 * v), std::sin(7.0 * v));
+    SCOPED_TRACE(fdi);
+    const RestoredTooth tooth = complete(crown, surface, area_vector(crown).normalized());
+    expect_promises(crown, tooth);
+    EXPECT_LT(tooth.triangles_brought_back, 0.01 * tooth.crown_triangles);
+  }
+}
+
+}  // namespace
+}  // namespace rhizodont
