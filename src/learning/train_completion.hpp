@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "learning/training_sample.hpp"
+
+namespace rhizodont {
+
+/// Sizes of the completion network. The defaults are those of the shipped weights.
+struct CompletionShape {
+  int input_points = 1024;  ///< crown points that the network looks at, >= centres_1
+  int centres_1 = 256;      ///< points left after the grouper's first thinning, >= centres_2
+  int centres_2 = 128;      ///< tokens of the encoder, >= 16
+  int width = 256;          ///< channels of a token, a multiple of `heads`
+  int heads = 4;            ///< attention heads, >= 1
+  int encoder_depth = 4;    ///< blocks, >= 1
+  int decoder_depth = 5;    ///< blocks, >= 1
+  int global_width = 512;   ///< channels of the global feature, >= 1
+  int queries = 256;        ///< patches of the output, >= 8
+  int patch_points = 12;    ///< points per patch, >= 1
+};
+
+/// Settings of `train_completion`.
+struct TrainingOptions {
+  CompletionShape shape;
+  int batch = 16;                   ///< samples per step, >= 1
+  std::uint64_t samples = 400'000;  ///< length of the learning-rate schedule in samples; training stops there
+  double hours = 0;                 ///< stop after this time, 0: no limit
+  double learning_rate = 6e-4;      ///< largest rate, reached after the warm-up
+  double lowest_rate = 0.02;        ///< share of `learning_rate` left at the end of the cosine, 0..1
+  int warm_up = 300;                ///< steps of linear warm-up, >= 0
+  double weight_decay = 5e-4;       ///< of weight matrices; biases, norms and anchors have none
+  double gradient_clip = 1.0;       ///< largest L2 norm of the gradient
+  double average_decay = 0.998;     ///< of the running mean of the weights that is validated and exported, 0..1
+  double unknown_share = 0.1;       ///< share of samples whose type is hidden, 0..1
+  double root_weight = 3;           ///< weight of target points below the crown beside those on it, > 0
+  double coarse_weight = 1;         ///< of the Chamfer term of the queries
+  double denoise_weight = 0.5;      ///< of the Chamfer term of the denoising queries
+  double normal_weight = 0.1;       ///< of the term 1 - cos, beside lengths in units of 12 mm
+  int denoise_queries = 64;         ///< extra queries in training, >= 0
+  double denoise_jitter = 0.04;     ///< standard deviation of their displacement, units of 12 mm
+  bool half_precision = true;       ///< bfloat16 for matrix products where the processor has them
+  int threads = 2;                  ///< each works on its share of a batch, >= 1, divides `batch`
+  std::uint64_t seed = 1;           ///< of weights, noise and sample numbers
+  int validation_samples = 64;      ///< held-out samples, numbers that training never reaches; 0: none
+  double validation_minutes = 10;   ///< time between validations
+  double checkpoint_minutes = 3;    ///< time between checkpoints; a stopped run loses at most this
+  int log_steps = 50;               ///< steps between log lines, >= 1
+  std::filesystem::path folder;     ///< where checkpoints go; empty: none are written
+  bool resume = false;              ///< go on from the folder's checkpoint, if there is one
+  std::function<void(const std::string&)> log;  ///< gets each line; may be empty
+};
+
+/// What training came to.
+struct TrainingResult {
+  std::uint64_t steps = 0;        ///< optimiser steps since the very start
+  std::uint64_t samples = 0;      ///< training samples since the very start
+  double last_loss = 0;           ///< total loss of the last step
+  double best_root_chamfer = -1;  ///< best validation figure: root Chamfer-L1 in mm; -1: never validated
+};
+
+/// Trains the completion network on samples made on the fly. Writes `checkpoint.safetensors` (everything that is needed
+/// to go on: a resumed run gives the same weights as one that was never stopped, if the threads are as many) and, each
+/// time the validation figure improves, `best.safetensors` (running mean of the weights, half precision) to
+/// `options.folder`.
+/// The sample provider is called from `threads` threads at once, with numbers below `first_validation_sample` for
+/// training and from there on for validation.
+/// Throws UsageError for options out of range, InputError for a sample or checkpoint that does not fit.
+TrainingResult train_completion(const SampleProvider& provider, const TrainingOptions& options);
+
+/// Writes the weights of a training folder (`best.safetensors`, or the checkpoint's running mean if it was never
+/// validated) as a file for CompletionNetwork::load, in half precision, with `notes` added to its metadata.
+/// Returns the metadata written. Throws InputError if the folder has no weights.
+std::map<std::string, std::string> export_completion(const std::filesystem::path& folder,
+                                                     const std::filesystem::path& path,
+                                                     const std::map<std::string, std::string>& notes);
+
+}  // namespace rhizodont
