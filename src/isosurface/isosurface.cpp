@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// MidNormal and GradNormal (Hass and Trnkova, Approximating isosurfaces by guaranteed-quality triangular meshes, 2020).
+#include "isosurface/isosurface.hpp"
+
+#include <cmath>
+
+#include "isosurface/cut_cells.hpp"
+#include "isosurface/edge_mesh.hpp"
+#include "isosurface/projection.hpp"
+#include "mesh/geometry.hpp"
+#include "rhizodont/error.hpp"
+
+namespace rhizodont {
+namespace {
+
+void check_options(const IsosurfaceOptions& options, double iso) {
+  const auto require = [](bool holds, const char* sentence) {
+    if (!holds) throw UsageError(sentence);
+  };
+  require(std::isfinite(iso), "The value on the surface must be a number.");
+  require(options.e > 0.0 && std::isfinite(options.e), "The tiling's size e must be a positive number of millimetres.");
+  require(options.origin.allFinite(), "The tiling's origin must be a point.");
+  require(options.tolerance > 0.0 && std::isfinite(options.tolerance), "The tolerance must be positive.");
+  require(options.max_displacement > 0.0 && options.max_displacement <= 1.0,
+          "The largest displacement must lie between 0 and 1, in units of e.");
+  require(options.max_cells > 0, "The largest number of cells must be positive.");
+}
+
+struct Extraction {
+  EdgeMesh edge_mesh;
+  std::vector<EdgeVertex> vertices;
+  Isosurface surface;
+};
+
+Extraction extract(const ScalarField& field, double iso, std::span<const Point> seeds, const IsosurfaceOptions& options,
+                   bool even_valences) {
+  check_options(options, iso);
+  const GoldbergTiling tiling(options.e, options.origin);
+  const CutCells cells = find_cut_cells(field, iso, seeds, tiling, options);
+  Extraction extraction;
+  extraction.edge_mesh = triangulate_cells(cells);
+  extraction.surface.dropped_components = cells.other_components;
+  extraction.surface.visited_cells = cells.visited;
+  extraction.surface.evaluated_vertices = cells.vertices.size();
+  if (even_valences) extraction.surface.removed_vertices = remove_valence_4(extraction.edge_mesh);
+  for (const auto& [inside, outside] : extraction.edge_mesh.edges) {
+    EdgeVertex vertex;
+    vertex.inside = tiling.position(cells.vertices[static_cast<std::size_t>(inside)]);
+    vertex.outside = tiling.position(cells.vertices[static_cast<std::size_t>(outside)]);
+    extraction.vertices.push_back(vertex);
+  }
+  extraction.surface.mesh.triangles = extraction.edge_mesh.triangles;
+  extraction.surface.euler_number = checked_euler_number(extraction.vertices.size(), extraction.surface.mesh.triangles);
+  return extraction;
+}
+
+void check_outward(const TriangleMesh& mesh) {
+  if (!(volume(mesh) > 0.0))
+    throw NoResultError(
+        "The surface found encloses a hollow, not a solid: the field is larger outside it than inside.");
+}
+
+}  // namespace
+
+Isosurface mid_normal(const ScalarField& field, double iso, std::span<const Point> seeds,
+                      const IsosurfaceOptions& options) {
+  Extraction extraction = extract(field, iso, seeds, options, false);
+  for (const EdgeVertex& vertex : extraction.vertices)
+    extraction.surface.mesh.vertices.push_back(0.5 * (vertex.inside + vertex.outside));
+  check_outward(extraction.surface.mesh);
+  return std::move(extraction.surface);
+}
+
+Isosurface grad_normal(const ScalarField& field, double iso, std::span<const Point> seeds,
+                       const IsosurfaceOptions& options) {
+  Extraction extraction = extract(field, iso, seeds, options, true);
+  project_vertices(field, iso, options, extraction.vertices);
+  extraction.surface.restrained_vertices =
+      restrain_flipped(extraction.vertices, extraction.surface.mesh.triangles, field);
+  for (const EdgeVertex& vertex : extraction.vertices) extraction.surface.mesh.vertices.push_back(vertex.position);
+  check_outward(extraction.surface.mesh);
+  return std::move(extraction.surface);
+}
+
+}  // namespace rhizodont

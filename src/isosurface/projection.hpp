@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "isosurface/isosurface.hpp"
+
+namespace rhizodont {
+
+/// A vertex on a lattice edge that the surface cuts, and where it goes.
+struct EdgeVertex {
+  Point inside = Point::Zero();    ///< end of the edge with field > iso
+  Point outside = Point::Zero();   ///< other end
+  Point crossing = Point::Zero();  ///< of the edge and the surface
+  Point position =
+      Point::Zero();  ///< on the surface, the point nearest to the edge's midpoint; the crossing if none is near
+  Eigen::Vector3d normal =
+      Eigen::Vector3d::Zero();  ///< of the surface at `position`, outward unit; zero where the field has no gradient
+};
+
+/// Finds crossing, position and normal of each vertex, whose ends are given.
+void project_vertices(const ScalarField& field, double iso, const IsosurfaceOptions& options,
+                      std::vector<EdgeVertex>& vertices);
+
+/// Moves vertices of triangles that turned over back towards their crossings. Returns how many were moved.
+std::size_t restrain_flipped(std::vector<EdgeVertex>& vertices, const std::vector<Triangle>& triangles,
+                             const ScalarField& field);
+
+}  // namespace rhizodont
