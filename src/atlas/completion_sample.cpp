@@ -66,7 +66,8 @@ void append(std::vector<float>& values, const Eigen::Vector3d& p) {
   for (int i = 0; i < 3; ++i) values.push_back(static_cast<float>(p[i]));
 }
 
-// Axis and centre from the crop alone; about the axis the family's own frame, turned by a registration error.
+}  // namespace
+
 CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn) {
   CanonicalFrame frame;
   const Eigen::Quaterniond upright =
@@ -75,8 +76,6 @@ CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn) {
   frame.centre = area_centroid(crown);
   return frame;
 }
-
-}  // namespace
 
 CompletionSample make_completion_sample(const ToothFamilies& families, std::uint64_t seed,
                                         const CompletionSampleOptions& options) {
@@ -88,7 +87,7 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
   const SyntheticTooth tooth = generate_tooth(families, sample.type, random.bits());
   const CroppedCrown crop = draw_cropped_crown(tooth, options.paper_crop_share, options.gap_probability, random);
   const double jitter = options.rotation_jitter_radians;
-  sample.frame = frame_of_crop(crop.mesh, random.uniform(-jitter, jitter));
+  sample.frame = frame_of_crop(crop.mesh, random.uniform(-jitter, jitter) - tooth.crown_turn);
 
   sample.input.reserve(3 * options.input_points);
   const double noise = options.scanner_noise_mm;

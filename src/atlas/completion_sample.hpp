@@ -47,6 +47,10 @@ struct CompletionSample {
 CompletionSample make_completion_sample(const ToothFamilies& families, std::uint64_t seed,
                                         const CompletionSampleOptions& options = {});
 
+/// Axis and centre from an open crown in the generator's own frame; about the axis that frame, turned by `turn`
+/// radians.
+CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn);
+
 /// Samples with seeds from here on are never trained on.
 inline constexpr std::uint64_t validation_seed_offset = std::uint64_t{1} << 40;
 

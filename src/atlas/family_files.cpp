@@ -4,6 +4,8 @@
 // Reads the templates and the table of mean dimensions (Wheeler; Ash and Nelson, "Wheeler's Dental Anatomy").
 #include "atlas/tooth_family.hpp"
 #include "atlas/tooth_template.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
@@ -11,6 +13,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <numeric>
@@ -82,6 +85,41 @@ Eigen::Vector3d buccal_direction(const std::vector<Eigen::Vector3d>& arch, std::
   return outward.normalized();
 }
 
+// Neighbours in the arch share forms; a first upper premolar has a single root in about 40 % of people, a second one
+// two roots in about 10 %.
+std::vector<TemplateLoan> possible_loans() {
+  return {{1, 0, 0.06}, {3, 4, 0.35},   {4, 3, 0.10},   {5, 6, 0.10},   {6, 5, 0.15},   {7, 6, 0.30},  {8, 9, 0.25},
+          {9, 8, 0.25}, {11, 12, 0.10}, {12, 11, 0.15}, {13, 14, 0.08}, {14, 13, 0.12}, {15, 14, 0.30}};
+}
+
+TriangleMesh enamel(const FamilyTemplate& tooth) {
+  TriangleMesh crown;
+  crown.vertices = tooth.mesh.vertices;
+  for (const Triangle& t : tooth.mesh.triangles)
+    if (std::all_of(t.begin(), t.end(), [&](int v) { return tooth.crown[static_cast<std::size_t>(v)] == 1; }))
+      crown.triangles.push_back(t);
+  return crown;
+}
+
+// Templates stand in the arch turned each in its own way: what a borrowed one has against the type's own.
+void measure_turns(ToothFamilies& families) {
+  tbb::parallel_for(std::size_t{0}, families.loans.size(), [&](std::size_t i) {
+    TemplateLoan& loan = families.loans[i];
+    const FamilyTemplate& own = families.templates[static_cast<std::size_t>(loan.type)];
+    const TriangleMesh goal = enamel(own), borrowed = enamel(families.templates[static_cast<std::size_t>(loan.from)]);
+    CanonicalFrame upright;
+    upright.centre = area_centroid(goal);
+    const SurfaceSamples samples = sample_surface(goal, 512, 1);
+    MeanCrown mean;
+    for (const Point& p : samples.points) mean.crown.points.push_back(upright.to_canonical(p));
+    mean.crown.normals = samples.normals;
+    const Eigen::Matrix3d r = canonical_frame(borrowed, fdi_of_type(loan.type, false), mean).frame.rotation;
+    loan.turn = -std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
+    // Molars also fit the wrong way round; in the arch neighbours stand alike.
+    if (std::abs(loan.turn) > 0.6) loan.turn = 0;
+  });
+}
+
 }  // namespace
 
 ToothFamilies load_tooth_families(const std::filesystem::path& folder, const FamilyLoadOptions& options) {
@@ -120,6 +158,11 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
     families.templates[t] = analyse_template(files[t].mesh, crowns[t],
                                              buccal_direction(arch, static_cast<std::size_t>(at)), options.vertices);
   });
+  for (const TemplateLoan& loan : possible_loans()) {
+    const auto loaded = [&wanted](int type) { return std::find(wanted.begin(), wanted.end(), type) != wanted.end(); };
+    if (loaded(loan.type) && loaded(loan.from)) families.loans.push_back(loan);
+  }
+  measure_turns(families);
   return families;
 }
 

@@ -78,33 +78,15 @@ class Waves {
   std::vector<Wave> waves_;
 };
 
-// Which type's template may stand in for another, and how often: neighbours in the arch share forms, and the second
-// premolar's single root is that of the first premolar in about 40 % of people.
-int template_for(int type, RandomStream& random, const ToothFamilies& families) {
-  struct Loan {
-    int type, from;
-    double share;
-  };
-  static constexpr std::array<Loan, 13> loans{{{3, 4, 0.35},
-                                               {4, 3, 0.10},
-                                               {5, 6, 0.10},
-                                               {6, 5, 0.15},
-                                               {7, 6, 0.30},
-                                               {8, 9, 0.25},
-                                               {9, 8, 0.25},
-                                               {11, 12, 0.10},
-                                               {12, 11, 0.15},
-                                               {13, 14, 0.08},
-                                               {14, 13, 0.12},
-                                               {15, 14, 0.30},
-                                               {1, 0, 0.06}}};
-  const double draw = random.uniform();
-  for (const Loan& loan : loans) {
-    if (loan.type == type && draw < loan.share &&
-        !families.templates[static_cast<std::size_t>(loan.from)].mesh.vertices.empty())
-      return loan.from;
+// The type's own template or a borrowed one.
+TemplateLoan choose_template(int type, RandomStream& random, const ToothFamilies& families) {
+  double draw = random.uniform();
+  for (const TemplateLoan& loan : families.loans) {
+    if (loan.type != type) continue;
+    if (draw < loan.share) return loan;
+    draw -= loan.share;
   }
-  return type;
+  return {type, type, 1, 0};
 }
 
 // What is drawn for one root.
@@ -152,7 +134,7 @@ ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean,
   const double buccal = -source.junction(0, source.junction.half_width.y());
   const double crown_height = population * size * proportion() * mean.crown_height;
   shape.scale.z() = crown_height / (source.crown_height + buccal);
-  shape.junction_scale = random.normal(1.0, 0.2) * shape.scale.z();
+  shape.junction_scale = random.normal(1.0, variation.junction_curve) * shape.scale.z();
   const double below = buccal * shape.junction_scale;
 
   double length = population * mean.root_length * std::pow(size, variation.root_size_correlation) + below;
@@ -183,12 +165,12 @@ ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean,
       const Eigen::Vector2d outward = source.mesh.vertices[root.apex].head<2>() - centre;
       drawn.shift = (spread + random.normal(0.0, 0.5 * variation.divergence_mm)) * outward.normalized() +
                     Eigen::Vector2d(random.normal(0.0, 0.4), random.normal(0.0, 0.4)) * variation.divergence_mm;
-      drawn.stretch = random.normal(0.0, 0.05);
+      drawn.stretch = random.normal(0.0, 0.05) * std::min(1.0, variation.divergence_mm);
     }
     drawn.shift_power = random.uniform(1.2, 2.5);
     drawn.taper = random.normal(0.0, 0.7 * variation.taper);
     drawn.cross_section = random.normal(0.0, 0.8 * variation.root_thickness);
-    if (random.chance(0.4)) drawn.blunt = random.uniform(0.0, 0.7);
+    if (random.chance(variation.blunt_share)) drawn.blunt = random.uniform(0.0, 0.7);
     shape.roots.push_back(drawn);
   }
   if (random.chance(variation.wear_share)) {
@@ -282,11 +264,33 @@ bool is_sound(const FamilyTemplate& source, const SyntheticTooth& tooth) {
   return source.roots.size() < 2 || !roots_collide(tooth, vertex_normals(tooth.mesh));
 }
 
+// Rotation about z that brings the vertices `from` nearest to `to`, crown only: closed form of the planar Procrustes
+// problem.
+double crown_turn(const std::vector<Point>& from, const std::vector<Point>& to,
+                  const std::vector<std::uint8_t>& crown) {
+  Eigen::Vector2d mean_from = Eigen::Vector2d::Zero(), mean_to = mean_from;
+  double count = 0;
+  for (std::size_t v = 0; v < crown.size(); ++v) {
+    if (crown[v] == 0) continue;
+    mean_from += from[v].head<2>(), mean_to += to[v].head<2>(), count += 1;
+  }
+  mean_from /= count, mean_to /= count;
+  double sine = 0, cosine = 0;
+  for (std::size_t v = 0; v < crown.size(); ++v) {
+    if (crown[v] == 0) continue;
+    const Eigen::Vector2d a = from[v].head<2>() - mean_from, b = to[v].head<2>() - mean_to;
+    sine += a.x() * b.y() - a.y() * b.x(), cosine += a.dot(b);
+  }
+  return std::atan2(sine, cosine);
+}
+
 SyntheticTooth draw_tooth(const FamilyTemplate& source, const ToothDimensions& mean, int type,
                           const ToothVariation& variation, RandomStream& random) {
   const ToothShape shape = draw_shape(source, mean, type, variation, random);
-  const Waves whole(random, 10, 6.0, 20.0, variation.warp_mm);
-  const Waves fine(random, 8, 2.5, 6.0, 0.35 * variation.warp_mm);
+  // Small teeth would be bent out of shape by what large ones bear.
+  const double warp = variation.warp_mm * std::clamp((mean.crown_mesiodistal + mean.crown_buccolingual) / 16, 0.7, 1.2);
+  const Waves whole(random, 10, 7.0, 20.0, warp);
+  const Waves fine(random, 8, 2.5, 6.0, 0.35 * warp);
   SyntheticTooth tooth;
   tooth.type = type;
   tooth.mesh.triangles = source.mesh.triangles;
@@ -297,7 +301,7 @@ SyntheticTooth draw_tooth(const FamilyTemplate& source, const ToothDimensions& m
   for (std::size_t v = 0; v < source.mesh.vertices.size(); ++v) {
     Point p = shaped(source, shape, source.mesh.vertices[v], source.root[v]);
     const double on_crown = smooth_step((p.z() + 1.5) / 3);
-    p += whole(p) + (0.4 + 0.6 * on_crown) * fine(p);
+    p += whole(p) + (0.25 + 0.75 * on_crown) * fine(p);
     top = std::max(top, p.z());
     tooth.mesh.vertices.push_back(p);
   }
@@ -320,6 +324,7 @@ SyntheticTooth draw_tooth(const FamilyTemplate& source, const ToothDimensions& m
         lowest = tooth.mesh.vertices[v];
     tooth.apices.push_back(lowest);
   }
+  tooth.crown_turn = crown_turn(source.mesh.vertices, tooth.mesh.vertices, tooth.crown);
   double bottom = 1e9;
   top = -1e9;
   for (const Point& p : tooth.mesh.vertices) bottom = std::min(bottom, p.z()), top = std::max(top, p.z());
@@ -329,22 +334,42 @@ SyntheticTooth draw_tooth(const FamilyTemplate& source, const ToothDimensions& m
   return tooth;
 }
 
+ToothVariation no_variation() {
+  ToothVariation none;
+  none.size = none.proportion = none.root_length_mm = none.trunk = none.warp_mm = none.root_thickness = none.taper = 0;
+  none.distal_bend_mm = none.divergence_mm = none.wear_mm = none.wear_share = none.junction_curve = 0;
+  none.blunt_share = none.crown_modes = 0;
+  return none;
+}
+
+void require_type(const ToothFamilies& families, int type) {
+  if (type < 0 || type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
+  if (families.templates[static_cast<std::size_t>(type)].mesh.vertices.empty())
+    throw UsageError("The template of tooth type " + std::to_string(type) + " was not loaded.");
+}
+
 }  // namespace
 
 SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint64_t seed,
                               const ToothVariation& variation) {
-  if (type < 0 || type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
-  if (families.templates[static_cast<std::size_t>(type)].mesh.vertices.empty())
-    throw UsageError("The template of tooth type " + std::to_string(type) + " was not loaded.");
+  require_type(families, type);
   RandomStream random(seed, static_cast<std::uint64_t>(type) + 1);
   for (int draw = 0; draw < 20; ++draw) {
-    const int from = template_for(type, random, families);
-    const FamilyTemplate& source = families.templates[static_cast<std::size_t>(from)];
+    const TemplateLoan loan = choose_template(type, random, families);
+    const FamilyTemplate& source = families.templates[static_cast<std::size_t>(loan.from)];
     SyntheticTooth tooth =
         draw_tooth(source, families.dimensions[static_cast<std::size_t>(type)], type, variation, random);
+    tooth.crown_turn += loan.turn;
     if (is_sound(source, tooth)) return tooth;
   }
   throw NoResultError("No sound tooth of type " + std::to_string(type) + " came out of 20 draws.");
+}
+
+SyntheticTooth mean_tooth(const ToothFamilies& families, int type) {
+  require_type(families, type);
+  RandomStream unused(0);
+  return draw_tooth(families.templates[static_cast<std::size_t>(type)],
+                    families.dimensions[static_cast<std::size_t>(type)], type, no_variation(), unused);
 }
 
 }  // namespace rhizodont

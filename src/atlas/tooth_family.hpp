@@ -52,10 +52,19 @@ struct ToothDimensions {
   double crown_buccolingual = 0;
 };
 
+/// A template that stands in for another type.
+struct TemplateLoan {
+  int type = 0, from = 0;  ///< types 0..15: grown as, template of
+  double share = 0;        ///< of that type's teeth, 0..1
+  double turn = 0;         ///< rotation about z (radians) that the borrowed template has against the type's own
+};
+
 /// Everything the generator draws from; immutable after loading, may be shared between threads.
 struct ToothFamilies {
   std::array<FamilyTemplate, tooth_type_count> templates;
   std::array<ToothDimensions, tooth_type_count> dimensions;
+  /// Now and then a type is grown from a neighbour's template.
+  std::vector<TemplateLoan> loans;
 };
 
 /// Options of load_tooth_families.
@@ -76,11 +85,13 @@ struct ToothVariation {
   double root_length_mm = 1.45;        ///< root length beside what goes with size, millimetres
   double root_size_correlation = 0.5;  ///< exponent with which the root's length follows the crown's size, 0..1
   double trunk = 0.15;                 ///< length of the root trunk, relative
-  double warp_mm = 0.30;               ///< smooth displacement of the surface, wavelengths of 6 to 20 mm, millimetres
+  double warp_mm = 0.27;               ///< smooth displacement of the surface of a tooth 8 mm wide, waves of 7 to 20 mm
   double root_thickness = 0.08;        ///< the root's cross-section along x and y each, relative
-  double taper = 0.15;                 ///< change of the cross-section from neck to apex, relative
+  double taper = 0.12;                 ///< change of the cross-section from neck to apex, relative
   double distal_bend_mm = 0.9;         ///< sideways shift of the apex towards distal and buccal, millimetres
   double divergence_mm = 0.9;          ///< shift of each apex of a multi-rooted tooth away from the others, millimetres
+  double junction_curve = 0.2;         ///< depth of the curves of the cemento-enamel junction, relative
+  double blunt_share = 0.4;            ///< share of root tips that are rounded off, by up to 0.7 mm, 0..1
   double wear_mm = 0.8;                ///< upper end of the uniform loss of cusp height in a worn tooth, millimetres
   double wear_share = 0.4;             ///< share of worn teeth, 0..1
   double crown_modes = 1.0;            ///< factor on the variation of the statistical crown model, where there is one
@@ -94,10 +105,11 @@ struct SyntheticTooth {
   std::vector<int> root;                 ///< per vertex: root below its branching, else -1
   Eigen::Vector3d growth_axis{0, 0, 1};  ///< root to crown
   JunctionHeight junction;               ///< height of the cemento-enamel junction
-  std::vector<Point> apices;             ///< tips of the roots
-  double crown_height = 0;               ///< top above the junction's mean height
-  double root_length = 0;                ///< junction's mean height to the deepest apex along z
-  double furcation_z = 0;                ///< highest branching, height; 0 for a single root
+  double crown_turn = 0;      ///< rotation about z (radians) that the crown has against the type's mean crown
+  std::vector<Point> apices;  ///< tips of the roots
+  double crown_height = 0;    ///< top above the junction's mean height
+  double root_length = 0;     ///< junction's mean height to the deepest apex along z
+  double furcation_z = 0;     ///< highest branching, height; 0 for a single root
 };
 
 /// Draws tooth number `seed` of a type (0..15). Depends on the arguments alone. A draw that folds, turns over or lets
@@ -105,5 +117,8 @@ struct SyntheticTooth {
 /// Throws UsageError for a bad type or one that was not loaded, NoResultError after 20 rejected draws.
 SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint64_t seed,
                               const ToothVariation& variation = {});
+
+/// The tooth of a type (0..15) without any variation: its own template at mean dimensions. Throws as generate_tooth.
+SyntheticTooth mean_tooth(const ToothFamilies& families, int type);
 
 }  // namespace rhizodont

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "atlas/tooth_family.hpp"
+#include "completion/frame.hpp"
+
+#include <cstddef>
+
+namespace rhizodont {
+
+/// The mean crowns and anchors of all types: the generator's teeth without variation, cut at the cemento-enamel
+/// junction, in canonical pose. `points` (>= 64) oriented points per crown and as many anchors per tooth.
+/// Throws UsageError if a type was not loaded.
+Atlas make_atlas(const ToothFamilies& families, std::size_t points = 512);
+
+}  // namespace rhizodont

@@ -1,0 +1,374 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Laying mean crowns on crowns: a search over starting rotations, then trimmed two-way iterative closest points with
+// normals. P. J. Besl, N. D. McKay, "A method for registration of 3-D shapes", 1992; D. Chetverikov, D. Stepanov,
+// P. Krsek, "Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm", 2005;
+// similarity from pairs: S. Umeyama, "Least-squares estimation of transformation parameters between two point
+// patterns", 1991.
+#include "completion/frame.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/sampling.hpp"
+#include "rhizodont/error.hpp"
+
+#include <tbb/parallel_for.h>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+
+namespace rhizodont {
+namespace {
+
+using Matrix3X = Eigen::Matrix3Xd;
+
+// Oriented points in millimetres.
+struct Cloud {
+  Matrix3X points, normals;
+
+  Eigen::Index size() const { return points.cols(); }
+};
+
+Cloud cloud_of(const OrientedPoints& source, double scale) {
+  Cloud cloud;
+  const auto count = static_cast<Eigen::Index>(source.points.size());
+  cloud.points.resize(3, count);
+  cloud.normals.resize(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    cloud.points.col(i) = scale * source.points[static_cast<std::size_t>(i)];
+    cloud.normals.col(i) = source.normals[static_cast<std::size_t>(i)];
+  }
+  return cloud;
+}
+
+// Every k-th point: the clouds are in random or farthest-point order, of which any part is even.
+Cloud thinned(const Cloud& cloud, Eigen::Index count) {
+  if (cloud.size() <= count) return cloud;
+  Cloud result;
+  result.points.resize(3, count);
+  result.normals.resize(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index from = i * cloud.size() / count;
+    result.points.col(i) = cloud.points.col(from);
+    result.normals.col(i) = cloud.normals.col(from);
+  }
+  return result;
+}
+
+struct Similarity {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  double scale = 1;
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // to = scale * rotation * from + shift
+};
+
+Cloud moved(const Cloud& cloud, const Similarity& by) {
+  Cloud result;
+  result.points = (by.scale * by.rotation * cloud.points).colwise() + by.shift;
+  result.normals = by.rotation * cloud.normals;
+  return result;
+}
+
+// Squared distance of each point of `from` to the nearest of `to`, normals included, and which that is.
+struct Nearest {
+  std::vector<double> squared;
+  std::vector<Eigen::Index> index;
+};
+
+// Six numbers per point, one list for each: coordinates, then weighted normals.
+struct Features {
+  std::array<std::vector<float>, 6> rows;
+
+  std::size_t size() const { return rows[0].size(); }
+};
+
+Features features_of(const Cloud& cloud, double normal_weight) {
+  Features features;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (Eigen::Index i = 0; i < cloud.size(); ++i) {
+      features.rows[k].push_back(static_cast<float>(cloud.points(static_cast<Eigen::Index>(k), i)));
+      features.rows[k + 3].push_back(
+          static_cast<float>(normal_weight * cloud.normals(static_cast<Eigen::Index>(k), i)));
+    }
+  }
+  return features;
+}
+
+Nearest nearest(const Features& from, const Features& to) {
+  Nearest result;
+  const std::size_t count = to.size();
+  std::vector<float> squared(count);
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::fill(squared.begin(), squared.end(), 0.0F);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const float* row = to.rows[k].data();
+      const float at = from.rows[k][i];
+      for (std::size_t j = 0; j < count; ++j) squared[j] += (row[j] - at) * (row[j] - at);
+    }
+    const auto best = std::min_element(squared.begin(), squared.end());
+    result.squared.push_back(static_cast<double>(*best));
+    result.index.push_back(best - squared.begin());
+  }
+  return result;
+}
+
+double trimmed_limit(std::vector<double> values, double share) {
+  const auto at = std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+double trimmed_mean_distance(const std::vector<double>& squared, double share) {
+  const double limit = trimmed_limit(squared, share);
+  double sum = 0;
+  Eigen::Index count = 0;
+  for (double value : squared)
+    if (value <= limit) sum += std::sqrt(value), ++count;
+  return sum / static_cast<double>(count);
+}
+
+// Shares of the pairs that count, by direction. A crown with a cap, or cut lower than the mean crown, has surface that
+// the mean lacks; one cut higher lacks surface of the mean.
+struct Trim {
+  double crown, mean;
+};
+
+double two_way_distance(const Features& crown, const Features& mean, const Trim& trim) {
+  return 0.5 * (trimmed_mean_distance(nearest(crown, mean).squared, trim.crown) +
+                trimmed_mean_distance(nearest(mean, crown).squared, trim.mean));
+}
+
+struct ScaleRange {
+  double low, high;
+};
+
+// Umeyama's closed form for pairs (from, to).
+Similarity similarity_of_pairs(const Matrix3X& from, const Matrix3X& to, const ScaleRange& range) {
+  const Eigen::Vector3d mean_from = from.rowwise().mean(), mean_to = to.rowwise().mean();
+  const Matrix3X a = from.colwise() - mean_from, b = to.colwise() - mean_to;
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(b * a.transpose(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d sign(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
+  Similarity result;
+  result.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
+  const double spread = a.squaredNorm();
+  result.scale = spread > 0 ? svd.singularValues().dot(sign) / spread : 1;
+  result.scale = std::clamp(result.scale, range.low, range.high);
+  result.shift = mean_to - result.scale * result.rotation * mean_from;
+  return result;
+}
+
+Similarity refined(const Cloud& crown, const Cloud& mean, Similarity at, const RegistrationOptions& options,
+                   const Trim& trim, int iterations) {
+  const Features goal = features_of(mean, options.normal_weight_mm);
+  for (int i = 0; i < iterations; ++i) {
+    const Cloud here = moved(crown, at);
+    const Features features = features_of(here, options.normal_weight_mm);
+    const Nearest forth = nearest(features, goal), back = nearest(goal, features);
+    const double forth_limit = trimmed_limit(forth.squared, trim.crown);
+    const double back_limit = trimmed_limit(back.squared, trim.mean);
+    std::vector<std::pair<Eigen::Index, Eigen::Index>> pairs;  // crown point, mean point
+    for (Eigen::Index k = 0; k < here.size(); ++k)
+      if (forth.squared[static_cast<std::size_t>(k)] <= forth_limit)
+        pairs.emplace_back(k, forth.index[static_cast<std::size_t>(k)]);
+    for (Eigen::Index k = 0; k < mean.size(); ++k)
+      if (back.squared[static_cast<std::size_t>(k)] <= back_limit)
+        pairs.emplace_back(back.index[static_cast<std::size_t>(k)], k);
+    Matrix3X from(3, static_cast<Eigen::Index>(pairs.size())), to(3, from.cols());
+    for (Eigen::Index k = 0; k < from.cols(); ++k) {
+      const auto& [c, m] = pairs[static_cast<std::size_t>(k)];
+      from.col(k) = crown.points.col(c);
+      to.col(k) = mean.points.col(m);
+    }
+    at = similarity_of_pairs(from, to, {0.8, 1.3});
+  }
+  return at;
+}
+
+// Start with a rotation: tops together along z, centres together across.
+Similarity start_with(const Eigen::Matrix3d& rotation, const Cloud& crown, const Cloud& mean) {
+  Similarity start;
+  start.rotation = rotation;
+  const Matrix3X turned = rotation * crown.points;
+  start.shift = mean.points.rowwise().mean() - turned.rowwise().mean();
+  start.shift.z() = mean.points.row(2).maxCoeff() - turned.row(2).maxCoeff();
+  return start;
+}
+
+struct Registered {
+  Similarity at;
+  double residual = std::numeric_limits<double>::max();
+};
+
+Registered register_cloud(const Cloud& crown, const Cloud& mean, const std::vector<Eigen::Matrix3d>& rotations,
+                          const RegistrationOptions& options, const Trim& trim) {
+  const Cloud coarse_crown = thinned(crown, 128), coarse_mean = thinned(mean, 128);
+  const Cloud fine_crown = thinned(crown, 256), fine_mean = thinned(mean, 256);
+  const Features coarse_goal = features_of(coarse_mean, options.normal_weight_mm);
+  std::vector<std::pair<double, std::size_t>> starts;
+  for (std::size_t r = 0; r < rotations.size(); ++r) {
+    const Similarity start = start_with(rotations[r], coarse_crown, coarse_mean);
+    const Features features = features_of(moved(coarse_crown, start), options.normal_weight_mm);
+    starts.emplace_back(two_way_distance(features, coarse_goal, trim), r);
+  }
+  std::sort(starts.begin(), starts.end());
+  std::vector<Eigen::Matrix3d> chosen;
+  for (const auto& [distance, r] : starts) {
+    // Starts next to one already taken would only find the same place.
+    const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](const Eigen::Matrix3d& other) {
+      return Eigen::AngleAxisd(Eigen::Matrix3d(other.transpose() * rotations[r])).angle() < 0.4;
+    });
+    if (is_new) chosen.push_back(rotations[r]);
+    if (static_cast<int>(chosen.size()) == options.refined_starts) break;
+  }
+  Registered best;
+  const Features goal = features_of(mean, options.normal_weight_mm);
+  for (const Eigen::Matrix3d& rotation : chosen) {
+    Similarity at = start_with(rotation, fine_crown, fine_mean);
+    at = refined(fine_crown, fine_mean, at, options, trim, options.iterations);
+    const Features features = features_of(moved(crown, at), options.normal_weight_mm);
+    const double residual = two_way_distance(features, goal, trim);
+    if (residual < best.residual) best = {at, residual};
+  }
+  best.at = refined(crown, mean, best.at, options, trim, 3);
+  best.residual = two_way_distance(features_of(moved(crown, best.at), options.normal_weight_mm), goal, trim);
+  return best;
+}
+
+void check(const RegistrationOptions& options) {
+  if (options.start_angles < 4 || options.refined_starts < 1 || options.iterations < 1)
+    throw UsageError("A registration needs at least 4 starting angles, 1 refined start and 1 iteration.");
+  if (!(options.trim >= 0.3 && options.trim <= 1) || !(options.normal_weight_mm >= 0))
+    throw UsageError("The trimmed share of a registration lies between 0.3 and 1, its normal weight is not negative.");
+}
+
+Eigen::Matrix3d about_z(double angle) { return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix(); }
+
+std::vector<Eigen::Matrix3d> rotations_about_z(int count) {
+  std::vector<Eigen::Matrix3d> rotations;
+  for (int i = 0; i < count; ++i) rotations.push_back(about_z(2 * std::numbers::pi * i / count));
+  return rotations;
+}
+
+// Directions spread evenly over the sphere (Fibonacci lattice), each brought up to z and turned about it.
+std::vector<Eigen::Matrix3d> all_rotations(int directions, int angles) {
+  std::vector<Eigen::Matrix3d> rotations;
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  for (int d = 0; d < directions; ++d) {
+    const double z = 1 - (2.0 * d + 1) / directions, radius = std::sqrt(1 - z * z);
+    const Eigen::Vector3d direction(radius * std::cos(golden * d), radius * std::sin(golden * d), z);
+    const Eigen::Matrix3d up =
+        Eigen::Quaterniond::FromTwoVectors(direction, Eigen::Vector3d::UnitZ().eval()).toRotationMatrix();
+    for (int a = 0; a < angles; ++a) rotations.push_back(about_z(2 * std::numbers::pi * a / angles) * up);
+  }
+  return rotations;
+}
+
+OrientedPoints surface_points(const TriangleMesh& mesh) {
+  const SurfaceSamples samples = sample_surface(mesh, 512, 1);
+  return {samples.points, samples.normals};
+}
+
+// World points to a pose with `axis` up and `centre` in the origin, mirrored for the right side.
+Cloud upright_cloud(const OrientedPoints& points, const CanonicalFrame& upright) {
+  OrientedPoints turned;
+  for (const Point& p : points.points) turned.points.push_back(upright.to_canonical(p));
+  for (const Eigen::Vector3d& n : points.normals) turned.normals.push_back(upright.direction_to_canonical(n));
+  return cloud_of(turned, upright.scale);
+}
+
+CanonicalFrame upright_frame(const Eigen::Vector3d& axis, const Point& centre, bool right_side) {
+  CanonicalFrame frame;
+  frame.rotation = Eigen::Quaterniond::FromTwoVectors(axis, Eigen::Vector3d::UnitZ().eval()).toRotationMatrix();
+  frame.centre = centre;
+  frame.mirrored = right_side;
+  return frame;
+}
+
+// A rotation that acts after the mirroring of an upright frame, taken into the frame.
+CanonicalFrame turned_frame(const CanonicalFrame& upright, const Eigen::Matrix3d& rotation) {
+  CanonicalFrame frame = upright;
+  const Eigen::Vector3d mirror(upright.mirrored ? -1 : 1, 1, 1);
+  frame.rotation = mirror.asDiagonal() * rotation * mirror.asDiagonal() * upright.rotation;
+  return frame;
+}
+
+CrownFrame frame_from(const OrientedPoints& points, const Eigen::Vector3d& axis, const Point& centre, bool right_side,
+                      const MeanCrown& mean, const RegistrationOptions& options) {
+  const CanonicalFrame upright = upright_frame(axis, centre, right_side);
+  const Cloud crown = upright_cloud(points, upright), goal = cloud_of(mean.crown, upright.scale);
+  const Registered found =
+      register_cloud(crown, goal, rotations_about_z(options.start_angles), options, {options.trim, options.trim});
+  // The axis is the crown's own: of the registration only the turn about it is kept.
+  const Eigen::Matrix3d& r = found.at.rotation;
+  CrownFrame result;
+  result.frame = turned_frame(upright, about_z(std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1))));
+  result.residual_mm = found.residual / found.at.scale;
+  return result;
+}
+
+void check_mean(const MeanCrown& mean) {
+  if (mean.crown.points.size() < 50 || mean.crown.points.size() != mean.crown.normals.size())
+    throw UsageError("The mean crown of this tooth type is missing from the atlas.");
+}
+
+}  // namespace
+
+CrownFrame canonical_frame(const TriangleMesh& open_crown, int fdi, const MeanCrown& mean,
+                           const RegistrationOptions& options) {
+  check(options);
+  check_mean(mean);
+  const bool right_side = is_right_side(fdi);
+  return frame_from(surface_points(open_crown), growth_axis(open_crown), area_centroid(open_crown), right_side, mean,
+                    options);
+}
+
+TypeGuess guess_fdi_type(const TriangleMesh& open_crown, const Atlas& atlas, const RegistrationOptions& options) {
+  check(options);
+  const OrientedPoints points = surface_points(open_crown);
+  const Eigen::Vector3d axis = growth_axis(open_crown);
+  const Point centre = area_centroid(open_crown);
+  std::array<CrownFrame, 2 * tooth_type_count> frames;
+  tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
+    check_mean(atlas.types[i / 2]);
+    frames[i] = frame_from(points, axis, centre, i % 2 == 1, atlas.types[i / 2], options);
+  });
+  TypeGuess guess;
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    guess.residuals_mm[i] = frames[i].residual_mm;
+    if (frames[i].residual_mm < frames[best].residual_mm) best = i;
+  }
+  guess.fdi = fdi_of_type(static_cast<int>(best / 2), best % 2 == 1);
+  guess.frame = frames[best];
+  return guess;
+}
+
+RigidFit fit_mean_crown(const OrientedPoints& points, const MeanCrown& mean, bool right_side, bool any_orientation,
+                        const Eigen::Vector3d& axis_hint, const RegistrationOptions& options) {
+  check(options);
+  check_mean(mean);
+  if (points.points.size() < 50 || points.points.size() != points.normals.size())
+    throw InputError("Too few surface points to lay a mean crown on.");
+  if (!any_orientation && !(std::abs(axis_hint.norm() - 1) < 1e-6)) throw UsageError("The axis is not a unit vector.");
+  Point centre = Point::Zero();
+  for (const Point& p : points.points) centre += p / static_cast<double>(points.points.size());
+  const CanonicalFrame upright =
+      upright_frame(any_orientation ? Eigen::Vector3d::UnitZ().eval() : axis_hint, centre, right_side);
+  const Cloud crown = upright_cloud(points, upright), goal = cloud_of(mean.crown, upright.scale);
+  const std::vector<Eigen::Matrix3d> rotations =
+      any_orientation ? all_rotations(40, 12) : rotations_about_z(options.start_angles);
+  const Registered found = register_cloud(crown, goal, rotations, options, {0.8 * options.trim, options.trim});
+  RigidFit fit;
+  fit.frame = turned_frame(upright, found.at.rotation);
+  fit.residual_mm = found.residual / found.at.scale;
+  fit.scale_ratio = 1 / found.at.scale;
+  // The mean crown's own origin, carried back to the scan.
+  const Eigen::Vector3d origin = found.at.rotation.transpose() * (-found.at.shift) / found.at.scale / upright.scale;
+  fit.frame.centre = upright.to_world(origin);
+  return fit;
+}
+
+}  // namespace rhizodont
