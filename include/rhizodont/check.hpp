@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rhizodont/mesh.hpp"
+#include "rhizodont/quality.hpp"
 
 #include <array>
 #include <cstdint>
@@ -14,37 +15,43 @@
 namespace rhizodont {
 
 struct CheckOptions {
-  /// Compare coordinates after rounding both to float. Right where the tooth was stored as float, wrong otherwise;
-  /// unset: exactly if the tooth has a coordinate that is no float, else as float.
+  /// Compare coordinates after rounding both to float: right where the tooth was stored as float, too lenient
+  /// otherwise. Unset: as float if every coordinate of the tooth is a float, else exactly.
   std::optional<bool> compare_as_float;
-  /// Least share of the crown's triangles that must be found again, (0, 1]. The design allows skirt to be dropped; a
-  /// tooth that keeps less than this is not the tooth of this crown.
-  double least_kept_share = 0.5;
+  /// Least share of the crown's triangles that must be found again, [0, 1]; at least one triangle is always demanded.
+  /// Skirt and a cap over the base may be dropped, but a tooth that keeps less than this is not the tooth of this
+  /// crown.
+  double least_kept_share = 0.25;
 };
 
-/// Promise 1: the crown found again in the tooth, bit for bit.
-struct CrownCheck {
-  std::int64_t vertices = 0;            ///< of the crown that a triangle uses
-  std::int64_t kept_vertices = 0;       ///< found in the tooth with the same bits (-0 = +0)
-  std::vector<int> dropped_vertices;    ///< of the crown, not found: must be skirt or repaired defects
-  std::int64_t triangles = 0;           ///< of the crown
-  std::int64_t kept_triangles = 0;      ///< found in the tooth with the same vertices in the same cyclic order
-  double kept_share = 0;                ///< kept_triangles / triangles
-  std::vector<int> broken_triangles;    ///< of the crown: all three vertices kept, triangle not in the tooth
-  std::vector<int> ambiguous_vertices;  ///< of the crown: several vertices of the crown or of the tooth have these bits
+/// Distances of the crown's vertices (those in use) from the tooth's surface, mm.
+struct CrownDeviation {
+  double max = 0;
+  double mean = 0;
+  /// Vertices in [0, 1e-3], (1e-3, 1e-2], (1e-2, 1e-1], (1e-1, inf) mm: the first three are the paper's table 3.
+  std::array<std::int64_t, 4> bins{};
+};
 
-  double deviation_max = 0;  ///< of crown vertices in use from the tooth's surface, mm
-  double deviation_mean = 0;
-  /// Vertices with a deviation in [0, 1e-3], (1e-3, 1e-2], (1e-2, 1e-1], (1e-1, inf) mm: the paper's table 3.
-  std::array<std::int64_t, 4> deviation_bins{};
+/// Promise 1: the crown found again in the tooth, bit for bit. Vertices and triangles are known by their coordinates
+/// alone.
+struct CrownCheck {
+  bool compared_as_float = false;
+  std::int64_t vertices = 0;                ///< of the crown that a triangle uses
+  std::int64_t kept_vertices = 0;           ///< of these, found in the tooth with the same bits (-0 = +0)
+  std::vector<int> dropped_vertices;        ///< of these, not found: skirt, cap or repaired defects
+  std::int64_t triangles = 0;               ///< of the crown, with three different vertices
+  std::int64_t kept_triangles = 0;          ///< of these, in the tooth with the same vertices in the same cyclic order
+  double kept_share = 0;                    ///< kept_triangles / triangles
+  std::vector<int> broken_triangles;        ///< of the crown: all three vertices kept, triangle not in the tooth
+  std::optional<CrownDeviation> deviation;  ///< nothing if the tooth has no surface
 
   bool holds = false;
 };
 
 /// Promise 2: the tooth is a solid.
 struct SolidCheck {
-  bool valid = false;  ///< indices in range, three different corners, finite coordinates
-  std::int64_t vertices = 0;
+  bool valid = false;         ///< all indices in range, three different corners per triangle, finite coordinates
+  std::int64_t vertices = 0;  ///< in use
   std::int64_t triangles = 0;
   std::int64_t unreferenced_vertices = 0;
   std::int64_t border_edges = 0;
@@ -53,9 +60,9 @@ struct SolidCheck {
   std::int64_t non_manifold_vertices = 0;
   int components = 0;
   int euler_number = 0;
+  std::optional<int> genus;                             ///< of a closed manifold
   double volume = 0;                                    ///< mm^3; positive = outward
   std::vector<std::pair<int, int>> self_intersections;  ///< pairs of tooth triangles
-  std::vector<std::string> defects;                     ///< one sentence each
 
   bool holds = false;
 };
@@ -63,14 +70,17 @@ struct SolidCheck {
 struct CheckReport {
   CrownCheck crown;
   SolidCheck solid;
-  std::vector<std::string> failures;  ///< one sentence per thing that is not as promised; empty if both hold
+  std::optional<QualityFigures> new_triangles;  ///< over the tooth's triangles that are not the crown's
+  std::optional<QualityFigures> all_triangles;  ///< over all of the tooth's
+  std::vector<std::string> failures;            ///< one sentence per thing that is not as promised; empty if both hold
+
   bool holds() const { return crown.holds && solid.holds; }
 };
 
 /// Proves promises 1 (the crown is exact) and 2 (the tooth is a solid) for any pair of meshes, however the tooth was
-/// made. Triangles of the crown with a repeated vertex are left out of the count.
-/// Throws InputError if the crown has no triangle, an index out of range or a coordinate that is not a number; a bad
-/// tooth is a failed check, not an error.
+/// made. Crown triangles with a repeated vertex are left out.
+/// Throws InputError if the crown has no triangle, an index out of range or a coordinate that is not a number,
+/// UsageError for an option out of range; a bad tooth is a failed check, not an error.
 CheckReport check(const TriangleMesh& crown, const TriangleMesh& tooth, const CheckOptions& options = {});
 
 }  // namespace rhizodont

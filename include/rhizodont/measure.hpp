@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rhizodont/mesh.hpp"
+#include "rhizodont/quality.hpp"
 
 #include <array>
 #include <cstdint>
@@ -14,8 +15,7 @@ namespace rhizodont {
 
 /// Figures of one mesh.
 struct MeshMeasures {
-  // Triangle quality over all triangles (paper, 4.3); degrees.
-  double q_avg = 0, q_min = 0, theta_avg = 0, theta_min = 0, theta_max = 0, percent_below_30 = 0;
+  QualityFigures quality;  ///< over all triangles
 
   // Topology.
   std::int64_t vertices = 0;  ///< in use
@@ -28,7 +28,8 @@ struct MeshMeasures {
   std::vector<std::string> defects;  ///< one sentence each
 
   // Sizes in mm, mm^2, mm^3.
-  double volume = 0;  ///< signed; only where the mesh is closed, else 0
+  bool closed = false;  ///< no border, manifold, consistently oriented
+  double volume = 0;    ///< signed; 0 unless closed
   double area = 0;
   std::array<double, 3> lowest{}, highest{};  ///< corners of the bounding box
   double diagonal = 0;

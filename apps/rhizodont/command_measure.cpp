@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "commands.hpp"
+#include "evaluation/json.hpp"
+#include "json_option.hpp"
+#include "rhizodont/io.hpp"
+#include "rhizodont/measure.hpp"
+
+#include <fmt/core.h>
+
+#include <memory>
+#include <string>
+
+namespace rhizodont::command_line {
+namespace {
+
+struct MeasureCommand {
+  std::string mesh;
+  JsonOption json;
+};
+
+void row(const char* name, const std::string& value) { fmt::print("  {:<34}{}\n", name, value); }
+
+void print_table(const MeshMeasures& m) {
+  fmt::print("Triangles\n");
+  row("Q mean, least", fmt::format("{:.4f}, {:.4f}", m.quality.q_avg, m.quality.q_min));
+  row("smallest angle mean, least", fmt::format("{:.2f}, {:.2f} degrees", m.quality.theta_avg, m.quality.theta_min));
+  row("largest angle", fmt::format("{:.2f} degrees", m.quality.theta_max));
+  row("angles under 30 degrees", fmt::format("{:.3f} %", m.quality.percent_below_30));
+  fmt::print("Topology\n");
+  row("vertices, edges, triangles", fmt::format("{}, {}, {}", m.vertices, m.edges, m.triangles));
+  row("pieces", std::to_string(m.components));
+  row("closed", m.closed ? "yes" : "no");
+  row("border edges, loops", fmt::format("{}, {}", m.border_edges, m.border_loops));
+  row("Euler number, genus", fmt::format("{}, {}", m.euler_number, m.genus ? std::to_string(*m.genus) : "-"));
+  row("self-intersecting pairs", std::to_string(m.self_intersections));
+  fmt::print("Size\n");
+  row("volume", m.closed ? fmt::format("{:.3f} mm3", m.volume) : "- (not closed)");
+  row("area", fmt::format("{:.3f} mm2", m.area));
+  for (std::size_t i = 0; i < 3; ++i)
+    row(i == 0   ? "from, to, extent in x"
+        : i == 1 ? "from, to, extent in y"
+                 : "from, to, extent in z",
+        fmt::format("{:.3f}, {:.3f}, {:.3f} mm", m.lowest[i], m.highest[i], m.highest[i] - m.lowest[i]));
+  row("edge least, mean, largest", fmt::format("{:.4f}, {:.4f}, {:.4f} mm", m.edge_min, m.edge_mean, m.edge_max));
+  for (const std::string& defect : m.defects) fmt::print("- {}\n", defect);
+}
+
+void run(const MeasureCommand& command) {
+  const MeshMeasures measures = measure(load_mesh(command.mesh).mesh);
+  if (command.json.wants_table()) print_table(measures);
+  command.json.write(measures);
+}
+
+}  // namespace
+
+void add_measure_command(CLI::App& app) {
+  auto command = std::make_shared<MeasureCommand>();
+  CLI::App* measure_app = app.add_subcommand(
+      "measure", "Triangle quality, topology, volume and sizes of any mesh (.stl .ply .obj .off .vtp)");
+  measure_app->add_option("MESH", command->mesh, "The mesh")->required();
+  command->json.add_to(*measure_app);
+  measure_app->callback([command] { run(*command); });
+}
+
+}  // namespace rhizodont::command_line

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "rhizodont/check.hpp"
+#include "rhizodont/measure.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace rhizodont {
+
+// For `nlohmann::ordered_json(value)`. Lengths in mm, angles in degrees.
+void to_json(nlohmann::ordered_json& json, const QualityFigures& figures);
+void to_json(nlohmann::ordered_json& json, const CheckReport& report);
+void to_json(nlohmann::ordered_json& json, const MeshMeasures& measures);
+
+}  // namespace rhizodont

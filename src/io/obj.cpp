@@ -1,0 +1,119 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Wavefront OBJ: vertices and faces; texture coordinates, normals, groups and materials are passed over.
+#include "io/cursors.hpp"
+#include "io/formats.hpp"
+
+#include <fmt/core.h>
+
+#include <iterator>
+
+namespace rhizodont {
+namespace {
+
+class ObjReader {
+ public:
+  explicit ObjReader(std::string_view text) : cursor_(text) {}
+
+  MeshFile read() {
+    while (cursor_.remaining() > 0) {
+      line_ = cursor_.line();
+      TextCursor words(logical_line());
+      const std::string_view keyword = words.word().value_or("");
+      if (keyword == "v")
+        read_vertex(words);
+      else if (keyword == "f")
+        read_face(words);
+    }
+    return std::move(file_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw InputError(fmt::format("line {}: {}", line_, what), {line_});
+  }
+
+  // A line that ends in a backslash goes on in the next one.
+  std::string_view logical_line() {
+    const auto without_return = [](std::string_view line) {
+      if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+      return line;
+    };
+    std::string_view line = without_return(cursor_.rest_of_line());
+    if (line.empty() || line.back() != '\\') return line;
+    joined_.clear();
+    while (!line.empty() && line.back() == '\\') {
+      joined_ += line.substr(0, line.size() - 1);
+      joined_ += ' ';
+      line = without_return(cursor_.rest_of_line());
+    }
+    return joined_ += line;
+  }
+
+  void read_vertex(TextCursor& words) {
+    Point point;
+    for (int i = 0; i < 3; ++i) {
+      const auto word = words.word();
+      const auto value = parse_number<double>(word.value_or(""));
+      if (!value) fail(word ? fmt::format("'{:.30}' is not a number", *word) : "a vertex needs three coordinates");
+      if (!std::isfinite(*value)) fail("a coordinate is not a finite number");
+      point[i] = *value;
+    }
+    file_.mesh.vertices.push_back(point);
+  }
+
+  void read_face(TextCursor& words) {
+    polygon_.clear();
+    while (const auto word = words.word()) {
+      if (word->front() == '#') break;
+      const auto number = parse_number<std::int64_t>(word->substr(0, word->find('/')));
+      if (!number) fail(fmt::format("'{:.30}' is not a vertex of a face", *word));
+      // counted from 1, or backwards from the last vertex so far
+      const auto count = static_cast<std::int64_t>(file_.mesh.vertices.size());
+      const std::int64_t index = *number > 0 ? *number - 1 : count + *number;
+      if (*number == 0 || index < 0) fail(fmt::format("vertex {} does not exist", *number));
+      largest_ = std::max(largest_, std::pair(index, line_));
+      polygon_.push_back(to_index(index));
+    }
+    if (polygon_.size() < 3) fail("a face needs three vertices");
+    append_fan(file_.mesh.triangles, polygon_);
+  }
+
+ public:
+  /// Faces may stand before their vertices, so this can only be told at the end.
+  void require_vertices_exist(const MeshFile& file) {
+    if (largest_.first < static_cast<std::int64_t>(file.mesh.vertices.size())) return;
+    line_ = largest_.second;
+    fail(fmt::format("vertex {} does not exist, there are {}", largest_.first + 1, file.mesh.vertices.size()));
+  }
+
+ private:
+  TextCursor cursor_;
+  std::int64_t line_ = 1;
+  std::string joined_;
+  std::vector<std::int32_t> polygon_;
+  std::pair<std::int64_t, std::int64_t> largest_{-1, 0};  // vertex of a face, line
+  MeshFile file_;
+};
+
+}  // namespace
+
+MeshFile read_obj(std::string_view bytes) {
+  ObjReader reader(bytes);
+  MeshFile file = reader.read();
+  reader.require_vertices_exist(file);
+  return file;
+}
+
+std::string write_obj(const MeshFile& file) {
+  std::string text;
+  const auto out = std::back_inserter(text);
+  for (const std::string& comment : file.comments) fmt::format_to(out, "# {}\n", comment);
+  // The shortest digits that give the same double again, also for a number that is a float: readers then find the same
+  // bits whether they keep it as float or as double.
+  for (const Point& p : file.mesh.vertices) fmt::format_to(out, "v {} {} {}\n", p.x(), p.y(), p.z());
+  for (const auto& [a, b, c] : file.mesh.triangles) fmt::format_to(out, "f {} {} {}\n", a + 1, b + 1, c + 1);
+  return text;
+}
+
+}  // namespace rhizodont

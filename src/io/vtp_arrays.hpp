@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "rhizodont/io.hpp"
+
+#include <pugixml.hpp>
+
+#include <bit>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rhizodont {
+
+/// How the arrays of one VTK XML file are stored.
+struct VtkStorage {
+  std::endian byte_order = std::endian::little;
+  bool wide_header = false;   ///< sizes before the data are 64 bits, not 32
+  bool compressed = false;    ///< zlib blocks
+  bool appended_raw = false;  ///< the appended section holds bytes, not base64
+  std::string_view appended;  ///< the appended section, after its underscore
+};
+
+/// Numbers of a DataArray element.
+struct VtkArray {
+  AttributeType type = AttributeType::float64;  ///< int64 and uint64 are given as float64
+  std::size_t components = 1;
+  std::vector<double> values;
+};
+
+/// Throws InputError, naming the array, if it is damaged or stored in a way that is not read.
+VtkArray read_vtk_array(const pugi::xml_node& node, const VtkStorage& storage);
+
+}  // namespace rhizodont
