@@ -8,57 +8,14 @@
 
 #include "fusion/separate.hpp"
 
-#include "mesh/adjacency.hpp"
+#include "fusion/crown_border.hpp"
 #include "mesh/closest_point.hpp"
 #include "rhizodont/error.hpp"
 
-#include <Eigen/Geometry>
-
 #include <algorithm>
-#include <set>
 
 namespace rhizodont {
 namespace {
-
-struct Border {
-  std::vector<bool> is_vertex;          // per crown vertex
-  std::set<std::pair<int, int>> edges;  // lower, higher
-  double mean_edge = 0;                 // mm
-};
-
-Border find_border(const TriangleMesh& crown) {
-  Border border;
-  border.is_vertex.assign(crown.vertices.size(), false);
-  const EdgeTable table = edge_table(crown);
-  for (std::size_t e = 0; e < table.size(); ++e) {
-    if (table.triangle_count(e) != 1) continue;
-    const auto [a, b] = table.vertices[e];
-    border.edges.insert({a, b});
-    border.is_vertex[static_cast<std::size_t>(a)] = border.is_vertex[static_cast<std::size_t>(b)] = true;
-    border.mean_edge +=
-        (crown.vertices[static_cast<std::size_t>(a)] - crown.vertices[static_cast<std::size_t>(b)]).norm();
-  }
-  if (border.edges.empty()) throw InputError("The crown is closed: without an open base there is no place for a root.");
-  border.mean_edge /= static_cast<double>(border.edges.size());
-  return border;
-}
-
-/// Whether a point of triangle t lies on the crown's border.
-bool on_border(const TriangleMesh& crown, const Border& border, const ClosestPoint& closest) {
-  const Triangle& t = crown.triangles[static_cast<std::size_t>(closest.triangle)];
-  const double tolerance = 1e-7 * border.mean_edge;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const int a = t[i];
-    const int b = t[(i + 1) % 3];
-    const Point& pa = crown.vertices[static_cast<std::size_t>(a)];
-    const Point& pb = crown.vertices[static_cast<std::size_t>(b)];
-    if (border.is_vertex[static_cast<std::size_t>(a)] && (closest.point - pa).norm() <= tolerance) return true;
-    if (!border.edges.contains({std::min(a, b), std::max(a, b)})) continue;
-    const Eigen::Vector3d along = pb - pa;
-    if ((closest.point - pa).cross(along).norm() <= tolerance * along.norm()) return true;
-  }
-  return false;
-}
 
 /// Keeps the vertices connected to `seed` through edges between marked vertices; returns how many were unmarked.
 int keep_connected(const TriangleMesh& surface, int seed, std::vector<bool>& marked) {
@@ -90,7 +47,7 @@ int keep_connected(const TriangleMesh& surface, int seed, std::vector<bool>& mar
 
 Separation separate_crown_and_root(const TriangleMesh& guiding_surface, const TriangleMesh& crown,
                                    const Eigen::Vector3d& growth_axis, const SeparationOptions& options) {
-  const Border border = find_border(crown);
+  const CrownBorder border = find_crown_border(crown);
   const ClosestPointIndex index(crown);
   const double clearance = options.clearance * border.mean_edge;
   Separation result;
@@ -100,7 +57,7 @@ Separation separate_crown_and_root(const TriangleMesh& guiding_surface, const Tr
   for (std::size_t v = 0; v < guiding_surface.vertices.size(); ++v) {
     const Point& p = guiding_surface.vertices[v];
     const ClosestPoint closest = index.closest(p);
-    const bool beyond_border = closest.distance > clearance && on_border(crown, border, closest);
+    const bool beyond_border = closest.distance > clearance && lies_on_border(crown, border, closest);
     result.is_root[v] = closest.distance > options.epsilon || beyond_border;
     if (!result.is_root[v]) continue;
     const double height = p.dot(growth_axis);

@@ -1,0 +1,125 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "rhizodont/check.hpp"
+#include "rhizodont/io.hpp"
+#include "rhizodont/mesh.hpp"
+#include "rhizodont/quality.hpp"
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rhizodont {
+
+/// What is to happen to a cap that closes the crown's base.
+enum class CapHandling { drop, keep };
+
+struct CompleteOptions {
+  std::optional<int> fdi;  ///< 11-18, 21-28, 31-38, 41-48; unset: the type is guessed from shape
+  double e = 0.5;          ///< mm, [0.2, 2]: side of the lattice under the guiding surface; new edges are about e / 2
+  CapHandling cap = CapHandling::drop;
+  double millimetres_per_unit = 1;  ///< > 0: of the input's coordinates; the output has the input's unit
+  double transition = 1.5;          ///< mm, [0, 5]: width of the smoothed band beside the crown
+  int threads = 0;                  ///< >= 0: at most so many threads; 0: all
+};
+
+/// A vertex of the input that the tooth does not have, and why.
+struct DroppedCrownVertex {
+  int vertex = 0;      ///< index in the input
+  std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt"
+};
+
+struct StageRecord {
+  std::string name;
+  double seconds = 0;
+  double peak_memory_mb = 0;  ///< of the process so far
+};
+
+/// How the tooth came about.
+struct CompletionRecord {
+  int fdi = 0;
+  bool fdi_guessed = false;
+  double type_residual_mm = 0;           ///< mean distance between the crown and its type's mean crown
+  Eigen::Vector3d growth_axis{0, 0, 1};  ///< unit, root to crown, in the input's frame
+  Eigen::Matrix3d frame_rotation = Eigen::Matrix3d::Identity();  ///< input directions to canonical directions
+  Point frame_centre = Point::Zero();                            ///< mm
+  bool frame_mirrored = false;
+  std::vector<int> kept_vertices;  ///< of the input, ascending: vertex i of the tooth is kept_vertices[i]
+  std::vector<DroppedCrownVertex> dropped_vertices;
+  int crown_triangles = 0;  ///< of the input
+  int kept_triangles = 0;
+  bool cap_dropped = false;
+  double root_length_mm = 0;         ///< along the growth axis, from the crown's border (lowest point) to the apex
+  double tooth_length_mm = 0;        ///< extent along the growth axis
+  double guiding_distance_mean = 0;  ///< mm, from the kept crown's vertices to the guiding surface
+  double guiding_distance_max = 0;
+  int guiding_vertices = 0;
+  int steiner_points = 0;            ///< added to make the crown a Delaunay mesh, none left in the tooth
+  int crown_triangles_direct = 0;    ///< given by the dual of the restricted Voronoi diagram
+  int crown_triangles_restored = 0;  ///< brought back by the restore step
+  int transition_vertices = 0;
+  QualityFigures new_triangles;  ///< over the triangles that are not the crown's (paper, 4.3)
+  CheckReport promises;          ///< evidence for promises 1 and 2
+  std::vector<StageRecord> stages;
+  std::vector<std::string> warnings;
+};
+
+/// A whole tooth. Its first vertices and triangles are the kept crown's, in the input's order, bit for bit.
+struct CompletedTooth {
+  TriangleMesh mesh;                 ///< in the input's unit and frame
+  std::vector<VertexSource> source;  ///< per vertex
+  CompletionRecord record;
+};
+
+/// Weights and mean crowns, loaded once and used for many teeth, from several threads if wished.
+class CompletionModels {
+ public:
+  /// Reads completion.safetensors and atlas.safetensors from a folder. Throws InputError if one is missing or damaged.
+  static CompletionModels load(const std::filesystem::path& folder);
+  CompletionModels(CompletionModels&&) noexcept;
+  CompletionModels& operator=(CompletionModels&&) noexcept;
+  ~CompletionModels();
+
+  struct Content;
+  const Content& content() const { return *content_; }
+
+ private:
+  explicit CompletionModels(std::unique_ptr<Content> content);
+  std::unique_ptr<Content> content_;
+};
+
+/// Version of the report's layout; the schema stands in docs/report.schema.json.
+inline constexpr int report_version = 1;
+
+/// The report on a completed tooth as JSON text. `input_file` and `input_bytes_sha256` say what was read; only the
+/// file's name goes into the report, not its folder. Schema: docs/report.schema.json.
+std::string completion_report(const CompletedTooth& tooth, const CompleteOptions& options,
+                              const std::filesystem::path& input_file, const std::string& input_bytes_sha256);
+
+/// SHA-256 of a file's bytes in lower-case hex. Throws InputError if it cannot be read.
+std::string sha256_of_file(const std::filesystem::path& file);
+
+/// The folder with the shipped models: $RHIZODONT_MODELS, else where they were installed, else the source tree's.
+std::filesystem::path default_models_folder();
+
+/// Called with the name of each stage before it begins.
+using ProgressCallback = std::function<void(std::string_view stage)>;
+
+/// Completes a scanned crown to a whole tooth, with the crown kept bit for bit (paper, figure 1). The result has been
+/// checked: the crown's triangles are found in it and it is a solid, or nothing is returned.
+///
+/// `crown`: open at its base, or closed by a cap that is recognised and dropped; triangles counterclockwise from
+/// outside. Throws InputError where the crown cannot be used (empty, not finite, several pieces, inside out,
+/// non-manifold edges, wrong size, cutting itself, closed without a cap), UsageError for options out of range,
+/// NoResultError where no result keeps the promises.
+CompletedTooth complete_tooth(const TriangleMesh& crown, const CompletionModels& models,
+                              const CompleteOptions& options = {}, const ProgressCallback& progress = {});
+
+}  // namespace rhizodont

@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", figure 1: the order of the stages.
+
+#include "rhizodont/complete.hpp"
+
+#include "completion/complete_points.hpp"
+#include "fusion/fuse.hpp"
+#include "isosurface/isosurface.hpp"
+#include "mesh/closest_point.hpp"
+#include "mesh/diagnosis.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/quality.hpp"
+#include "mesh/sampling.hpp"
+#include "pipeline/crown_input.hpp"
+#include "pipeline/guiding_cloud.hpp"
+#include "pipeline/models.hpp"
+#include "pipeline/stage_clock.hpp"
+#include "poisson/indicator.hpp"
+#include "rhizodont/check.hpp"
+#include "rhizodont/error.hpp"
+#include "skirt/cap.hpp"
+#include "skirt/skirt.hpp"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace rhizodont {
+namespace {
+
+void require_options_in_range(const CompleteOptions& options) {
+  if (!(options.e >= 0.2 && options.e <= 2))
+    throw UsageError(fmt::format("e = {} mm is out of its range, 0.2 to 2 mm.", options.e));
+  if (!(options.transition >= 0 && options.transition <= 5))
+    throw UsageError(fmt::format("A transition of {} mm is out of its range, 0 to 5 mm.", options.transition));
+  if (!(options.millimetres_per_unit > 0)) throw UsageError("The unit must be a positive number of millimetres.");
+  if (options.threads < 0) throw UsageError("The number of threads cannot be negative.");
+  if (options.fdi) tooth_type_of_fdi(*options.fdi);
+}
+
+TriangleMesh scaled(TriangleMesh mesh, double factor) {
+  if (factor != 1)
+    for (Point& p : mesh.vertices) p *= factor;
+  return mesh;
+}
+
+/// Growth axis of a crown closed by a cap, from the mean crown that fits it best. Without a number all types are tried.
+Eigen::Vector3d axis_of_closed_crown(const TriangleMesh& crown, const Atlas& atlas, std::optional<int> fdi) {
+  const SurfaceSamples samples = sample_surface(crown, 1500, 1);
+  const OrientedPoints points{samples.points, samples.normals};
+  double best = std::numeric_limits<double>::max();
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  for (int type = 0; type < tooth_type_count; ++type) {
+    if (fdi && type != tooth_type_of_fdi(*fdi)) continue;
+    const bool right = fdi && is_right_side(*fdi);
+    const RigidFit fit = fit_mean_crown(points, atlas.types[static_cast<std::size_t>(type)], right, true);
+    if (fit.residual_mm >= best) continue;
+    best = fit.residual_mm;
+    axis = fit.frame.direction_to_world(Eigen::Vector3d::UnitZ());
+  }
+  return axis;
+}
+
+/// The part of the crown that the tooth will keep: open at the base, its border made of simple loops.
+KeptCrown open_crown(const TriangleMesh& crown, const Atlas& atlas, const CompleteOptions& options,
+                     CompletionRecord& record) {
+  std::vector<bool> keep(crown.triangles.size(), true);
+  const bool closed = diagnose(crown).border_edges.empty();
+  if (closed) {
+    if (options.cap == CapHandling::keep)
+      throw InputError("The crown is closed and its cap was to be kept: there is no place for a root.");
+    const Cap cap = recognise_cap(crown, axis_of_closed_crown(crown, atlas, options.fdi));
+    for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = !cap.is_cap[t];
+    record.cap_dropped = true;
+  }
+  return keep_crown(crown, keep, closed ? "cap" : "skirt");
+}
+
+/// FDI number and canonical pose; a number that was not given is guessed, and so said.
+CrownFrame find_frame(const TriangleMesh& crown, const Atlas& atlas, const CompleteOptions& options,
+                      CompletionRecord& record) {
+  CrownFrame frame;
+  if (options.fdi) {
+    record.fdi = *options.fdi;
+    frame = canonical_frame(crown, record.fdi, atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(record.fdi))]);
+  } else {
+    const TypeGuess guess = guess_fdi_type(crown, atlas);
+    record.fdi = guess.fdi;
+    record.fdi_guessed = true;
+    record.warnings.push_back(
+        fmt::format("No FDI number was given; by its shape the crown was taken for tooth {}.", guess.fdi));
+    frame = guess.frame;
+  }
+  record.type_residual_mm = frame.residual_mm;
+  record.growth_axis = frame.frame.direction_to_world(Eigen::Vector3d::UnitZ());
+  record.frame_rotation = frame.frame.rotation;
+  record.frame_centre = frame.frame.centre;
+  record.frame_mirrored = frame.frame.mirrored;
+  return frame;
+}
+
+/// The guiding surface M: indicator function of the cloud, meshed by GradNormal.
+TriangleMesh build_guiding_surface(const GuidingCloud& cloud, double e, StageClock& clock) {
+  clock.begin("indicator function");
+  IndicatorOptions indicator;
+  indicator.spacing = std::min(0.4 * e, 0.2);
+  const IndicatorFunction chi = solve_indicator(cloud.samples, cloud.confidence, indicator);
+  clock.begin("isosurface");
+  IsosurfaceOptions isosurface;
+  isosurface.e = e;
+  const auto crown_samples = static_cast<std::size_t>(cloud.crown_samples);
+  const std::span<const Point> seeds(cloud.samples.points.data(), crown_samples);
+  Isosurface surface = grad_normal([&](const Point& p) { return chi.evaluate(p); }, chi.iso_value(), seeds, isosurface);
+  if (surface.euler_number != 2)
+    throw NoResultError("The predicted tooth has a hole through it (its surface is not that of a ball).");
+  return std::move(surface.mesh);
+}
+
+void note_guiding_distance(const TriangleMesh& crown, const TriangleMesh& surface, CompletionRecord& record) {
+  const ClosestPointIndex index(surface);
+  double sum = 0;
+  for (const Point& p : crown.vertices) {
+    const double d = index.closest(p).distance;
+    sum += d;
+    record.guiding_distance_max = std::max(record.guiding_distance_max, d);
+  }
+  record.guiding_distance_mean = sum / static_cast<double>(crown.vertices.size());
+  record.guiding_vertices = static_cast<int>(surface.vertices.size());
+}
+
+void note_fusion(const FusedTooth& fused, CompletionRecord& record) {
+  record.steiner_points = fused.steiner_points;
+  record.crown_triangles_direct = fused.crown_triangles_direct;
+  record.crown_triangles_restored = fused.tooth.triangles_brought_back;
+  record.transition_vertices = static_cast<int>(fused.transition.vertices.size());
+  record.warnings.insert(record.warnings.end(), fused.warnings.begin(), fused.warnings.end());
+}
+
+std::pair<double, double> extent_along(const std::vector<Point>& points, const Eigen::Vector3d& axis) {
+  double low = std::numeric_limits<double>::max();
+  double high = std::numeric_limits<double>::lowest();
+  for (const Point& p : points) {
+    low = std::min(low, p.dot(axis));
+    high = std::max(high, p.dot(axis));
+  }
+  return {low, high};
+}
+
+void note_lengths(const TriangleMesh& crown, const TriangleMesh& tooth, CompletionRecord& record) {
+  const auto [tooth_low, tooth_high] = extent_along(tooth.vertices, record.growth_axis);
+  record.root_length_mm = extent_along(crown.vertices, record.growth_axis).first - tooth_low;
+  record.tooth_length_mm = tooth_high - tooth_low;
+}
+
+/// The tooth in the input's unit: crown vertices are the input's own bits, new ones fit float where the input's do.
+TriangleMesh in_input_unit(const TriangleMesh& tooth, const TriangleMesh& input, const std::vector<int>& kept,
+                           double millimetres_per_unit) {
+  TriangleMesh result = tooth;
+  const bool as_float = coordinates_fit_float(input);
+  for (std::size_t v = 0; v < result.vertices.size(); ++v) {
+    Point& p = result.vertices[v];
+    if (v < kept.size()) {
+      p = input.vertices[static_cast<std::size_t>(kept[v])];
+      continue;
+    }
+    p /= millimetres_per_unit;
+    if (as_float) p = p.cast<float>().cast<double>();
+  }
+  return result;
+}
+
+CheckReport prove_promises(const TriangleMesh& input, const TriangleMesh& tooth) {
+  CheckOptions options;
+  options.compare_as_float = false;
+  options.least_kept_share = 1e-9;  // what was dropped, and why, stands in the record
+  const CheckReport report = check(input, tooth, options);
+  if (report.holds()) return report;
+  std::string sentence = "No tooth was found that keeps the promises:";
+  for (const std::string& failure : report.failures) sentence += " " + failure;
+  throw NoResultError(sentence);
+}
+
+CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Content& models,
+                        const CompleteOptions& options, StageClock& clock) {
+  CompletedTooth tooth;
+  CompletionRecord& record = tooth.record;
+  clock.begin("crown");
+  require_usable_crown(input);
+  const TriangleMesh in_millimetres = scaled(input, options.millimetres_per_unit);
+  require_tooth_size(in_millimetres, options.millimetres_per_unit);
+  const KeptCrown crown = open_crown(in_millimetres, models.atlas, options, record);
+  require_outward_and_uncut(crown.mesh);
+  record.crown_triangles = static_cast<int>(input.triangles.size());
+  record.kept_triangles = static_cast<int>(crown.mesh.triangles.size());
+  record.kept_vertices = crown.old_vertices;
+  for (const DroppedVertex& d : crown.dropped) record.dropped_vertices.push_back({d.vertex, d.reason});
+
+  clock.begin("frame");
+  const CrownFrame frame = find_frame(crown.mesh, models.atlas, options, record);
+  clock.begin("completion network");
+  const OrientedPoints predicted = complete_points(crown.mesh, record.fdi, frame.frame, models.network);
+  clock.begin("orientation");
+  const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, predicted);
+  const TriangleMesh surface = build_guiding_surface(cloud, options.e, clock);
+  note_guiding_distance(crown.mesh, surface, record);
+
+  clock.begin("joining");
+  FuseOptions fuse;
+  fuse.transition.band = options.transition;
+  const FusedTooth fused = fuse_crown_and_root(crown.mesh, surface, record.growth_axis, fuse);
+  note_fusion(fused, record);
+  note_lengths(crown.mesh, fused.tooth.mesh, record);
+
+  clock.begin("check");
+  tooth.mesh = in_input_unit(fused.tooth.mesh, input, crown.old_vertices, options.millimetres_per_unit);
+  tooth.source.assign(tooth.mesh.vertices.size(), VertexSource::predicted);
+  std::fill_n(tooth.source.begin(), crown.old_vertices.size(), VertexSource::scan);
+  for (const int v : fused.transition.vertices) tooth.source[static_cast<std::size_t>(v)] = VertexSource::transition;
+  record.promises = prove_promises(input, tooth.mesh);
+  std::vector<bool> is_new(tooth.mesh.triangles.size(), true);
+  std::fill_n(is_new.begin(), record.kept_triangles, false);
+  record.new_triangles = quality(tooth.mesh, is_new).value_or(QualityFigures{});
+  return tooth;
+}
+
+}  // namespace
+
+CompletedTooth complete_tooth(const TriangleMesh& crown, const CompletionModels& models, const CompleteOptions& options,
+                              const ProgressCallback& progress) {
+  require_options_in_range(options);
+  std::optional<tbb::global_control> limit;
+  if (options.threads > 0)
+    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+  StageClock clock(progress);
+  CompletedTooth tooth = complete(crown, models.content(), options, clock);
+  tooth.record.stages = clock.finish();
+  return tooth;
+}
+
+}  // namespace rhizodont

@@ -1,0 +1,146 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", section 3.5: additional points are
+//   sampled from the crown, so that the guiding surface runs close to it.
+// M. Alexa et al., "Computing and rendering point set surfaces", 2003: moving points to the plane of their neighbours.
+
+#include "pipeline/guiding_cloud.hpp"
+
+#include "fusion/crown_border.hpp"
+#include "mesh/closest_point.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/nearest_vertex.hpp"
+#include "mesh/sampling.hpp"
+#include "poisson/orientation.hpp"
+#include "rhizodont/error.hpp"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rhizodont {
+namespace {
+
+/// Where predicted points are and should be, for those that lie on the crown.
+struct CrownResiduals {
+  std::vector<Point> places;
+  std::vector<Eigen::Vector3d> moves;
+};
+
+struct SortedPrediction {
+  OrientedPoints beyond;    // predicted points beyond the crown's border
+  CrownResiduals on_crown;  // the others that are near enough to tell how far the prediction is off
+  int dropped = 0;
+};
+
+SortedPrediction sort_prediction(const TriangleMesh& crown, const OrientedPoints& predicted, double gap) {
+  const CrownBorder border = find_crown_border(crown);
+  const ClosestPointIndex index(crown);
+  SortedPrediction sorted;
+  constexpr double believable = 1.5;  // mm; a predicted crown point farther off says nothing about its neighbours
+  for (std::size_t i = 0; i < predicted.points.size(); ++i) {
+    const Point& p = predicted.points[i];
+    const ClosestPoint closest = index.closest(p);
+    if (lies_on_border(crown, border, closest)) {
+      if (closest.distance > gap) {
+        sorted.beyond.points.push_back(p);
+        sorted.beyond.normals.push_back(predicted.normals[i]);
+      } else {
+        ++sorted.dropped;
+      }
+      continue;
+    }
+    ++sorted.dropped;
+    const Eigen::Vector3d normal = triangle_normal(crown, static_cast<std::size_t>(closest.triangle));
+    if (closest.distance > believable || normal.dot(predicted.normals[i]) < 0.3) continue;
+    sorted.on_crown.places.push_back(p);
+    sorted.on_crown.moves.push_back(closest.point - p);
+  }
+  return sorted;
+}
+
+/// Moves points by the mean error of the prediction on the crown nearby, fading over `reach`.
+void correct(std::vector<Point>& points, const CrownResiduals& residuals, double reach) {
+  if (residuals.places.size() < 8) return;
+  const NearestVertexIndex index(residuals.places);
+  for (Point& p : points) {
+    const auto near = index.nearest(p, 24);
+    const double nearest = std::sqrt(near.front().squared_distance);
+    const double scale = near.back().squared_distance + 1e-12;
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double weights = 0;
+    for (const NearVertex& n : near) {
+      const double w = std::exp(-n.squared_distance / scale);
+      sum += w * residuals.moves[static_cast<std::size_t>(n.index)];
+      weights += w;
+    }
+    p += std::exp(-(nearest / reach) * (nearest / reach)) / weights * sum;
+  }
+}
+
+/// Moves each point to the plane of its neighbours on the same sheet; takes the noise out of predicted points.
+void smooth(OrientedPoints& cloud, int neighbours, int rounds) {
+  for (int round = 0; round < rounds; ++round) {
+    const NearestVertexIndex index(cloud.points);
+    std::vector<Point> moved = cloud.points;
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      const auto near = index.nearest(cloud.points[i], static_cast<std::size_t>(neighbours));
+      const double scale = near.back().squared_distance / 2 + 1e-12;
+      Point mean = Point::Zero();
+      double weights = 0;
+      for (const NearVertex& n : near) {
+        const auto j = static_cast<std::size_t>(n.index);
+        const double agreement = cloud.normals[i].dot(cloud.normals[j]);
+        if (agreement <= 0.2) continue;
+        const double w = agreement * std::exp(-n.squared_distance / scale);
+        mean += w * cloud.points[j];
+        weights += w;
+      }
+      if (!(weights > 0)) continue;
+      mean /= weights;
+      // Along the normal only: sliding would thin out the tip of the root.
+      moved[i] += cloud.normals[i] * cloud.normals[i].dot(mean - cloud.points[i]);
+    }
+    cloud.points = std::move(moved);
+  }
+}
+
+}  // namespace
+
+GuidingCloud assemble_guiding_cloud(const TriangleMesh& crown, const OrientedPoints& predicted,
+                                    const GuidingCloudOptions& options) {
+  SortedPrediction sorted = sort_prediction(crown, predicted, options.gap);
+  if (sorted.beyond.points.size() < 32) throw NoResultError("The network predicts no root beyond this crown.");
+  correct(sorted.beyond.points, sorted.on_crown, options.correction_reach);
+
+  GuidingCloud cloud;
+  cloud.predicted_dropped = sorted.dropped;
+  for (const Eigen::Vector3d& move : sorted.on_crown.moves)
+    cloud.prediction_error += move.norm() / static_cast<double>(sorted.on_crown.moves.size());
+  const auto count =
+      static_cast<std::size_t>(std::max(500.0, surface_area(crown) / (options.crown_spacing * options.crown_spacing)));
+  const SurfaceSamples on_crown = sample_surface(crown, count, 1);
+
+  // Orientation looks at root and crown together, so that the root's normals follow on from the crown's.
+  std::vector<Point> points = on_crown.points;
+  std::vector<Eigen::Vector3d> hints = on_crown.normals;
+  points.insert(points.end(), sorted.beyond.points.begin(), sorted.beyond.points.end());
+  hints.insert(hints.end(), sorted.beyond.normals.begin(), sorted.beyond.normals.end());
+  const OrientedPoints oriented = orient_normals(points, hints);
+  OrientedPoints root;
+  root.points.assign(oriented.points.begin() + static_cast<std::ptrdiff_t>(count), oriented.points.end());
+  root.normals.assign(oriented.normals.begin() + static_cast<std::ptrdiff_t>(count), oriented.normals.end());
+  smooth(root, options.smoothing_neighbours, options.smoothing_rounds);
+
+  cloud.samples = {on_crown.points, on_crown.normals};
+  cloud.samples.points.insert(cloud.samples.points.end(), root.points.begin(), root.points.end());
+  cloud.samples.normals.insert(cloud.samples.normals.end(), root.normals.begin(), root.normals.end());
+  cloud.confidence.assign(on_crown.points.size(), options.crown_confidence);
+  cloud.confidence.resize(cloud.samples.points.size(), 1.0);
+  cloud.crown_samples = static_cast<int>(count);
+  return cloud;
+}
+
+}  // namespace rhizodont

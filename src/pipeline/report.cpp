@@ -1,0 +1,112 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "evaluation/json.hpp"
+#include "rhizodont/complete.hpp"
+#include "rhizodont/error.hpp"
+
+#include <openssl/evp.h>
+#include <nlohmann/json.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+#include <map>
+
+namespace rhizodont {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+Json rows(const Eigen::Matrix3d& m) {
+  Json json = Json::array();
+  for (int r = 0; r < 3; ++r) json.push_back(numbers(m.row(r)));
+  return json;
+}
+
+Json crown_json(const CompletionRecord& record) {
+  std::map<std::string, std::vector<int>> by_reason;
+  for (const DroppedCrownVertex& d : record.dropped_vertices) by_reason[d.reason].push_back(d.vertex);
+  Json dropped = Json::object();
+  for (const auto& [reason, vertices] : by_reason) dropped[reason] = vertices;
+  return {{"triangles", record.crown_triangles},
+          {"kept_triangles", record.kept_triangles},
+          {"cap_dropped", record.cap_dropped},
+          {"dropped_vertices_by_reason", dropped},
+          {"kept_vertices", record.kept_vertices}};
+}
+
+Json frame_json(const CompletionRecord& record) {
+  return {{"growth_axis", numbers(record.growth_axis)},
+          {"rotation", rows(record.frame_rotation)},
+          {"centre_mm", numbers(record.frame_centre)},
+          {"mirrored", record.frame_mirrored},
+          {"distance_to_mean_crown_mm", record.type_residual_mm}};
+}
+
+Json joining_json(const CompletionRecord& record) {
+  return {{"guiding_vertices", record.guiding_vertices},
+          {"crown_to_guiding_surface_mean_mm", record.guiding_distance_mean},
+          {"crown_to_guiding_surface_max_mm", record.guiding_distance_max},
+          {"steiner_points", record.steiner_points},
+          {"crown_triangles_from_dual", record.crown_triangles_direct},
+          {"crown_triangles_restored", record.crown_triangles_restored},
+          {"transition_vertices", record.transition_vertices}};
+}
+
+Json stages_json(const std::vector<StageRecord>& stages) {
+  Json json = Json::array();
+  for (const StageRecord& s : stages)
+    json.push_back({{"name", s.name}, {"seconds", s.seconds}, {"peak_memory_mb", s.peak_memory_mb}});
+  return json;
+}
+
+}  // namespace
+
+std::string completion_report(const CompletedTooth& tooth, const CompleteOptions& options,
+                              const std::filesystem::path& input_file, const std::string& input_bytes_sha256) {
+  const CompletionRecord& record = tooth.record;
+  const Json json{
+      {"report_version", report_version},
+      {"program", {{"name", "rhizodont"}, {"version", RHIZODONT_VERSION}}},
+      {"notice", "A predicted root is not the patient's anatomy. For research and visualisation only."},
+      {"input", {{"file", input_file.filename().string()}, {"sha256", input_bytes_sha256}}},
+      {"options",
+       {{"e_mm", options.e},
+        {"cap", options.cap == CapHandling::keep ? "keep" : "drop"},
+        {"millimetres_per_unit", options.millimetres_per_unit},
+        {"transition_mm", options.transition},
+        {"threads", options.threads}}},
+      {"fdi", {{"number", record.fdi}, {"guessed", record.fdi_guessed}}},
+      {"frame", frame_json(record)},
+      {"crown", crown_json(record)},
+      {"root", {{"length_mm", record.root_length_mm}, {"tooth_length_mm", record.tooth_length_mm}}},
+      {"joining", joining_json(record)},
+      {"new_triangles", record.new_triangles},
+      {"promises", record.promises},
+      {"stages", stages_json(record.stages)},
+      {"warnings", record.warnings},
+  };
+  return json.dump(1) + "\n";
+}
+
+std::string sha256_of_file(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(fmt::format("The file {} cannot be read.", file.string()));
+  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
+  EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
+  std::array<char, 1 << 16> buffer;
+  while (stream.read(buffer.data(), buffer.size()) || stream.gcount() > 0)
+    EVP_DigestUpdate(context.get(), buffer.data(), static_cast<std::size_t>(stream.gcount()));
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
+  unsigned int length = 0;
+  EVP_DigestFinal_ex(context.get(), digest.data(), &length);
+  std::string hex;
+  for (unsigned int i = 0; i < length; ++i) hex += fmt::format("{:02x}", digest[i]);
+  return hex;
+}
+
+}  // namespace rhizodont
