@@ -3,6 +3,8 @@
 
 #include "pipeline/models.hpp"
 
+#include <dlfcn.h>
+
 #include <cstdlib>
 
 namespace rhizodont {
@@ -17,10 +19,26 @@ CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
       Content{load_atlas(folder / "atlas.safetensors"), CompletionNetwork::load(folder / "completion.safetensors")}));
 }
 
+namespace {
+
+/// share/rhizodont/models beside the folder that holds this code (bin, lib or lib/<architecture>); empty if not installed.
+std::filesystem::path installed_models() {
+  Dl_info info{};
+  if (dladdr(reinterpret_cast<const void*>(&default_models_folder), &info) == 0 || !info.dli_fname) return {};
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(info.dli_fname).parent_path();
+  for (const char* up : {"..", "../.."}) {
+    const std::filesystem::path models = folder / up / "share/rhizodont/models";
+    if (std::filesystem::exists(models / "completion.safetensors")) return models.lexically_normal();
+  }
+  return {};
+}
+
+}  // namespace
+
 std::filesystem::path default_models_folder() {
   if (const char* folder = std::getenv("RHIZODONT_MODELS"); folder && *folder) return folder;
-  if (std::filesystem::exists(RHIZODONT_INSTALLED_MODELS)) return RHIZODONT_INSTALLED_MODELS;
-  return RHIZODONT_SOURCE_MODELS;
+  const std::filesystem::path installed = installed_models();
+  return installed.empty() ? std::filesystem::path(RHIZODONT_SOURCE_MODELS) : installed;
 }
 
 }  // namespace rhizodont

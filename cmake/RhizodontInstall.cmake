@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: Rhizodont contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+# One shared library with all rooms: what `find_package(Rhizodont)` gives. Its public headers need Eigen alone; torch,
+# CGAL and the others stay inside.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+get_property(rooms GLOBAL PROPERTY RHIZODONT_ROOMS)
+file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/rhizodont_library.cpp "")
+add_library(rhizodont_library SHARED ${CMAKE_CURRENT_BINARY_DIR}/rhizodont_library.cpp)
+set_target_properties(rhizodont_library PROPERTIES
+  OUTPUT_NAME rhizodont EXPORT_NAME rhizodont
+  VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+target_link_libraries(rhizodont_library
+  PUBLIC Eigen3::Eigen
+  PRIVATE ${rooms})
+# All of every room, whether or not something in this library refers to it.
+list(JOIN rooms "," joined_rooms)
+set_property(TARGET rhizodont_library PROPERTY LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,${joined_rooms}")
+target_include_directories(rhizodont_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+target_compile_features(rhizodont_library INTERFACE cxx_std_20)
+# The folder of the BLAS that the networks need, see src/learning/CMakeLists.txt.
+set_target_properties(rhizodont_library rhizodont PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+
+install(TARGETS rhizodont_library EXPORT RhizodontTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS rhizodont RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(DIRECTORY include/rhizodont DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rhizodont/models)
+install(EXPORT RhizodontTargets NAMESPACE Rhizodont:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont)
+configure_package_config_file(cmake/RhizodontConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfig.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont)
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfigVersion.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont)

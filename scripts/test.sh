@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: Rhizodont contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+# Builds everything with warnings as errors and runs all tests.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+scripts/install_dependencies.sh
+git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
+cmake -S . -B build -G Ninja -DRHIZODONT_WERROR=ON
+cmake --build build
+ctest --test-dir build --output-on-failure --no-tests=error -j 2

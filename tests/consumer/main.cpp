@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Completes the crown given as the argument with the installed library and its installed models.
+
+#include <rhizodont/check.hpp>
+#include <rhizodont/complete.hpp>
+#include <rhizodont/io.hpp>
+
+#include <cstdio>
+
+int main(int argc, char** argv) {
+  if (argc != 2) return 2;
+  const rhizodont::TriangleMesh crown = rhizodont::load_mesh(argv[1]).mesh;
+  const auto models = rhizodont::CompletionModels::load(rhizodont::default_models_folder());
+  const rhizodont::CompletedTooth tooth = rhizodont::complete_tooth(crown, models);
+  std::printf("root %.2f mm\n", tooth.record.root_length_mm);
+  return rhizodont::check(crown, tooth.mesh).holds() ? 0 : 4;
+}
