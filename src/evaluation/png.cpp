@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluation/render.hpp"
+#include "rhizodont/error.hpp"
+
+#include <png.h>
+
+namespace rhizodont {
+
+std::string encode_png(const Image& image) {
+  png_image header{};
+  header.version = PNG_IMAGE_VERSION;
+  header.width = static_cast<png_uint_32>(image.width);
+  header.height = static_cast<png_uint_32>(image.height);
+  header.format = PNG_FORMAT_RGB;
+  png_alloc_size_t size = 0;
+  std::string bytes;
+  const auto write = [&](void* memory) {
+    if (!png_image_write_to_memory(&header, memory, &size, 0, image.rgb.data(), 0, nullptr))
+      throw Error(ErrorCode::internal, std::string("the picture cannot be encoded: ") + header.message);
+  };
+  write(nullptr);
+  bytes.resize(size);
+  write(bytes.data());
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace rhizodont
