@@ -69,12 +69,11 @@ struct RigidFit {
 
 /// Options of the registrations below.
 struct RegistrationOptions {
-  int start_angles = 36;   ///< starting rotations about the axis, >= 4
-  int refined_starts = 4;  ///< how many of the best starts are refined, 1..start_angles
-  int iterations = 20;     ///< refinements per start, >= 1
-  double trim = 0.85;      ///< share of the closest pairs that count, 0.3..1
-  double normal_weight_mm =
-      1.0;  ///< distance that a difference of 1 between unit normals counts for, millimetres, >= 0
+  int start_angles = 36;          ///< starting rotations about the axis, >= 4
+  int refined_starts = 4;         ///< how many of the best starts are refined, 1..start_angles
+  int iterations = 20;            ///< refinements per start, >= 1
+  double trim = 0.95;             ///< share of the closest pairs that count, 0.3..1
+  double normal_weight_mm = 2.5;  ///< millimetres that a difference of 1 between unit normals counts for, >= 0
 };
 
 /// The canonical frame of an open crown and how well its type's mean crown agrees with it.

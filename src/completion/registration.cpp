@@ -19,6 +19,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace rhizodont {
@@ -330,17 +331,33 @@ TypeGuess guess_fdi_type(const TriangleMesh& open_crown, const Atlas& atlas, con
   const OrientedPoints points = surface_points(open_crown);
   const Eigen::Vector3d axis = growth_axis(open_crown);
   const Point centre = area_centroid(open_crown);
+  for (const MeanCrown& mean : atlas.types) check_mean(mean);
   std::array<CrownFrame, 2 * tooth_type_count> frames;
-  tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
-    check_mean(atlas.types[i / 2]);
-    frames[i] = frame_from(points, axis, centre, i % 2 == 1, atlas.types[i / 2], options);
-  });
-  TypeGuess guess;
-  std::size_t best = 0;
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    guess.residuals_mm[i] = frames[i].residual_mm;
-    if (frames[i].residual_mm < frames[best].residual_mm) best = i;
+  const auto fit = [&](std::size_t i, const OrientedPoints& crown, const RegistrationOptions& how) {
+    frames[i] = frame_from(crown, axis, centre, i % 2 == 1, atlas.types[i / 2], how);
+  };
+  // A rough pass over everything, then the full registration of what came out best.
+  constexpr std::size_t candidates = 8;
+  OrientedPoints few;
+  for (std::size_t i = 0; i < points.points.size(); i += 3) {
+    few.points.push_back(points.points[i]);
+    few.normals.push_back(points.normals[i]);
   }
+  RegistrationOptions rough = options;
+  rough.refined_starts = std::min(2, options.refined_starts);
+  rough.iterations = std::min(6, options.iterations);
+  tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) { fit(i, few, rough); });
+  std::array<std::size_t, 2 * tooth_type_count> order{};
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&frames](std::size_t a, std::size_t b) { return frames[a].residual_mm < frames[b].residual_mm; });
+  tbb::parallel_for(std::size_t{0}, candidates, [&](std::size_t k) { fit(order[k], points, options); });
+  TypeGuess guess;
+  for (std::size_t i = 0; i < frames.size(); ++i) guess.residuals_mm[i] = frames[i].residual_mm;
+  const std::size_t best =
+      *std::min_element(order.begin(), order.begin() + candidates, [&frames](std::size_t a, std::size_t b) {
+        return frames[a].residual_mm != frames[b].residual_mm ? frames[a].residual_mm < frames[b].residual_mm : a < b;
+      });
   guess.fdi = fdi_of_type(static_cast<int>(best / 2), best % 2 == 1);
   guess.frame = frames[best];
   return guess;

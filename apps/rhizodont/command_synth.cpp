@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "atlas/crown_crop.hpp"
+#include "atlas/mean_teeth.hpp"
+#include "atlas/scanner_mesh.hpp"
+#include "atlas/tooth_family.hpp"
+#include "commands.hpp"
+#include "evaluation/render.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace rhizodont::command_line {
+namespace {
+
+struct SynthCommand {
+  std::string data;
+  int fdi = 0;
+  int count = 1;
+  std::uint64_t seed = 0;
+  std::string output;
+  std::string sheet;
+  std::string atlas;
+  bool crowns = false;
+  bool clean_cut = false;
+  double edge_mm = 0;
+  double noise_mm = 0.005;
+};
+
+// Generated teeth are left ones.
+TriangleMesh mirrored(TriangleMesh mesh) {
+  for (Point& p : mesh.vertices) p.x() = -p.x();
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+MeshFile tooth_file(const SyntheticTooth& tooth, const GumLine& line, bool right_side) {
+  MeshFile file;
+  file.mesh = right_side ? mirrored(tooth.mesh) : tooth.mesh;
+  for (Point& p : file.mesh.vertices) p = p.cast<float>().cast<double>().eval();
+  VertexAttribute source{AttributeType::uint8, {}}, enamel{AttributeType::uint8, {}};
+  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v) {
+    const Point& p = tooth.mesh.vertices[v];
+    const bool seen = p.z() > line.height(tooth.junction, p.x(), p.y());
+    source.values.push_back(static_cast<double>(seen ? VertexSource::scan : VertexSource::predicted));
+    enamel.values.push_back(tooth.crown[v]);
+  }
+  file.vertex_attributes[source_attribute] = std::move(source);
+  file.vertex_attributes["crown"] = std::move(enamel);
+  file.comments = {"synthetic tooth, made by rhizodont synth",
+                   "derived from Permanent Teeth, University of Dundee School of Dentistry "
+                   "(E. McDougall, A. Mason, M. Roughley), CC BY 4.0",
+                   fmt::format("root length {:.2f} mm, crown height {:.2f} mm", tooth.root_length, tooth.crown_height)};
+  return file;
+}
+
+CroppedCrown crop(const SynthCommand& command, const SyntheticTooth& tooth, std::uint64_t seed) {
+  RandomStream random(seed, 200);
+  if (!command.clean_cut) return draw_cropped_crown(tooth, 0, 0.3, random);
+  GumLine line;  // as a technician trims: the junction's own curve, a little above
+  line.junction_share = 0.8;
+  line.offset_mm = 0.4;
+  for (std::size_t k = 1; k < line.wave_mm.size(); ++k) {
+    line.wave_mm[k] = random.normal(0.0, 0.08);
+    line.wave_phase[k] = random.uniform(0, 6.28);
+  }
+  auto crown = crop_crown(tooth, line);
+  if (!crown) throw NoResultError("This tooth's crown does not come off in one piece.");
+  return {std::move(*crown), line};
+}
+
+void write_atlas(const SynthCommand& command, const ToothFamilies& families) {
+  const std::filesystem::path file = command.atlas;
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  save_atlas(make_atlas(families), file);
+  fmt::print("{}\n", command.atlas);
+}
+
+void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
+  const std::filesystem::path folder = command.output;
+  std::filesystem::create_directories(folder);
+  const bool right_side = is_right_side(command.fdi);
+  std::vector<TriangleMesh> drawn;
+  std::vector<std::vector<Colour>> colours;
+  for (int i = 0; i < command.count; ++i) {
+    const std::uint64_t seed = command.seed + static_cast<std::uint64_t>(i);
+    const SyntheticTooth tooth = generate_tooth(families, tooth_type_of_fdi(command.fdi), seed);
+    const CroppedCrown cropped = crop(command, tooth, seed);
+    const MeshFile file = tooth_file(tooth, cropped.line, right_side);
+    const std::string name = fmt::format("{}_{}.ply", command.fdi, seed);
+    save_mesh(folder / ("tooth_" + name), file);
+    fmt::print("{}: root {:.1f} mm, crown {:.1f} mm, {} root{}\n", (folder / ("tooth_" + name)).string(),
+               tooth.root_length, tooth.crown_height, tooth.apices.size(), tooth.apices.size() == 1 ? "" : "s");
+    if (command.crowns) {
+      MeshFile crown;
+      crown.mesh = right_side ? mirrored(cropped.mesh) : cropped.mesh;
+      if (command.edge_mm > 0) crown.mesh = scanner_mesh(crown.mesh, command.edge_mm, command.noise_mm, seed);
+      for (Point& p : crown.mesh.vertices) p = p.cast<float>().cast<double>().eval();
+      crown.comments = file.comments;
+      save_mesh(folder / ("crown_" + name), crown);
+      drawn.push_back(crown.mesh);
+      colours.push_back({plain_colour()});
+    }
+    drawn.push_back(file.mesh);
+    colours.push_back(colours_by_source(file.mesh, file.vertex_attributes.at(source_attribute).values));
+  }
+  if (command.sheet.empty()) return;
+  RenderOptions options;
+  options.width = 240;
+  options.height = 320;
+  options.views = {"front", "right", "back", "left", "top", "bottom"};
+  std::vector<RenderItem> items;
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    items.push_back({&drawn[i], colours[i], Eigen::Vector3d::UnitZ().eval()});
+  write_file_atomically(command.sheet, encode_png(render(items, options)));
+}
+
+void run(const SynthCommand& command) {
+  if (command.output.empty() && command.atlas.empty())
+    throw UsageError("Say where to: -o FOLDER for teeth, --atlas FILE for mean crowns.");
+  if (!command.output.empty() && command.fdi == 0) throw UsageError("Say which tooth: --type FDI, such as 36.");
+  FamilyLoadOptions options;
+  if (command.edge_mm > 0) options.vertices = 20000;  // finer than the scan to be made
+  const ToothFamilies families = load_tooth_families(command.data, options);
+  if (!command.atlas.empty()) write_atlas(command, families);
+  if (!command.output.empty()) write_teeth(command, families);
+}
+
+}  // namespace
+
+void add_synth_command(CLI::App& app) {
+  auto command = std::make_shared<SynthCommand>();
+  CLI::App* synth = app.add_subcommand("synth", "Make complete synthetic teeth, crowns cut from them, and the atlas");
+  synth->add_option("--data", command->data, "Folder with templates/tooth_FDI.ply and anatomy.csv")->required();
+  synth->add_option("--type", command->fdi, "FDI number of the tooth to make (11-18, 21-28, 31-38, 41-48)");
+  synth->add_option("--count", command->count, "How many")->capture_default_str()->check(CLI::Range(1, 100000));
+  synth->add_option("--seed", command->seed, "Number of the first; each tooth depends on its number alone")
+      ->capture_default_str();
+  synth->add_option("-o,--output", command->output, "Folder for tooth_FDI_SEED.ply (and crown_FDI_SEED.ply)");
+  synth->add_flag("--crowns", command->crowns, "Write the cropped crowns too");
+  synth->add_flag("--clean-cut", command->clean_cut, "Crop just above the cemento-enamel junction, without gaps");
+  synth->add_option("--edge", command->edge_mm, "Remesh the crowns like a scan, edge length in mm")
+      ->check(CLI::Range(0.1, 1.0));
+  synth->add_option("--noise", command->noise_mm, "Noise of remeshed crowns along their normals, mm")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 0.1));
+  synth->add_option("--sheet", command->sheet, "Draw what was made to this PNG");
+  synth->add_option("--atlas", command->atlas, "Write mean crowns and anchors of all types to this safetensors file");
+  synth->callback([command] { run(*command); });
+}
+
+}  // namespace rhizodont::command_line
