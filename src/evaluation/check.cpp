@@ -8,6 +8,7 @@
 #include "mesh/adjacency.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/diagnosis.hpp"
+#include "mesh/float_bits.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "mesh/quality.hpp"
 #include "mesh/self_intersection.hpp"
@@ -26,14 +27,9 @@
 namespace rhizodont {
 namespace {
 
-bool is_float(double x) {
-  return std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max()) &&
-         static_cast<double>(static_cast<float>(x)) == x;
-}
-
 bool all_floats(const TriangleMesh& mesh) {
   return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
-                     [](const Point& p) { return std::all_of(p.data(), p.data() + 3, is_float); });
+                     [](const Point& p) { return is_float(p.x()) && is_float(p.y()) && is_float(p.z()); });
 }
 
 // Numbers places in space: vertices with the same bits, in whichever mesh, have the same number.
@@ -69,9 +65,8 @@ class Places {
     Key bits{};
     for (std::size_t i = 0; i < 3; ++i) {
       const double x = p[static_cast<Eigen::Index>(i)];
-      const double compared = as_float_ && std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max())
-                                  ? static_cast<double>(static_cast<float>(x))
-                                  : x;
+      const double compared =
+          as_float_ && std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max()) ? nearest_float(x) : x;
       bits[i] = std::bit_cast<std::uint64_t>(compared + 0.0);  // -0 becomes +0
     }
     return bits;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/attribute_types.hpp"
 #include "io/formats.hpp"
+#include "mesh/float_bits.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -121,12 +122,8 @@ class TemporaryFile {
 }  // namespace
 
 bool coordinates_fit_float(const TriangleMesh& mesh) {
-  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Point& p) {
-    return std::all_of(p.data(), p.data() + 3, [](double x) {
-      return std::abs(x) <= static_cast<double>(std::numeric_limits<float>::max()) &&
-             static_cast<double>(static_cast<float>(x)) == x;
-    });
-  });
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
+                     [](const Point& p) { return is_float(p.x()) && is_float(p.y()) && is_float(p.z()); });
 }
 
 void finish_reading(MeshFile& file) {

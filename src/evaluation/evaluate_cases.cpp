@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluation/evaluate_cases.hpp"
+
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <system_error>
+
+namespace rhizodont {
+namespace {
+
+bool is_mesh_file(const std::filesystem::path& file) {
+  constexpr std::array<std::string_view, 5> extensions{".ply", ".stl", ".obj", ".off", ".vtp"};
+  std::string extension = file.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
+}
+
+bool is_permanent_tooth(std::string_view number) {
+  return number.size() == 2 && number[0] >= '1' && number[0] <= '4' && number[1] >= '1' && number[1] <= '8';
+}
+
+/// Mesh files prefix_NUMBER.extension of a folder by NUMBER.
+std::map<std::string, std::filesystem::path> numbered_files(const std::filesystem::path& folder,
+                                                            std::string_view prefix) {
+  std::map<std::string, std::filesystem::path> files;
+  std::error_code error;
+  for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    const std::string stem = at->path().stem().string();
+    if (!stem.starts_with(prefix) || !is_mesh_file(at->path())) continue;
+    const auto [place, fresh] = files.try_emplace(stem.substr(prefix.size()), at->path());
+    if (!fresh) throw InputError("The folder " + folder.string() + " has more than one file " + stem + ".");
+  }
+  if (error) throw InputError("The folder " + folder.string() + " cannot be read: " + error.message() + ".");
+  return files;
+}
+
+CaseOutcome evaluate(const NamedPredictor& predictor, int fdi, const TriangleMesh& crown, const TriangleMesh& truth,
+                     const RootFigureOptions& options) {
+  CaseOutcome outcome;
+  try {
+    const Eigen::Vector3d axis = crown_growth_axis(crown);
+    const auto start = std::chrono::steady_clock::now();
+    const TriangleMesh tooth = predictor.predict(crown, fdi);
+    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    outcome.figures = root_figures(crown, truth, tooth, axis, options);
+  } catch (const UsageError&) {
+    throw;
+  } catch (const std::exception& error) {
+    outcome.failure = error.what();
+  }
+  return outcome;
+}
+
+}  // namespace
+
+std::vector<EvaluationCase> find_evaluation_cases(const std::filesystem::path& folder) {
+  const auto crowns = numbered_files(folder, "crown_"), teeth = numbered_files(folder, "tooth_");
+  if (crowns.empty()) throw InputError("The folder " + folder.string() + " has no crown_FDI files.");
+  std::vector<EvaluationCase> cases;
+  for (const auto& [number, crown] : crowns) {
+    if (!is_permanent_tooth(number))
+      throw InputError("The number in the file name " + crown.filename().string() +
+                       " is not that of a permanent tooth.");
+    const auto tooth = teeth.find(number);
+    if (tooth == teeth.end())
+      throw InputError("The crown " + crown.filename().string() + " has no whole tooth tooth_" + number +
+                       " beside it.");
+    cases.push_back({std::stoi(number), crown, tooth->second});
+  }
+  return cases;
+}
+
+bool Evaluation::has_failures() const {
+  for (const EvaluatedCase& evaluated : cases)
+    for (const CaseOutcome& outcome : evaluated.outcomes)
+      if (!outcome.figures) return true;
+  return false;
+}
+
+Evaluation evaluate_cases(const std::vector<EvaluationCase>& cases, const std::vector<NamedPredictor>& predictors,
+                          const RootFigureOptions& options, const EvaluationProgress& progress) {
+  Evaluation evaluation;
+  for (const NamedPredictor& predictor : predictors) evaluation.predictors.push_back(predictor.name);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    EvaluatedCase evaluated{cases[i], {}};
+    TriangleMesh crown, truth;
+    std::string unreadable;
+    try {
+      crown = load_mesh(cases[i].crown).mesh;
+      truth = load_mesh(cases[i].truth).mesh;
+    } catch (const InputError& error) {
+      unreadable = error.what();
+    }
+    for (const NamedPredictor& predictor : predictors) {
+      if (!unreadable.empty()) {
+        evaluated.outcomes.push_back({std::nullopt, unreadable, 0});
+        continue;
+      }
+      if (progress) progress(cases[i], i, predictor.name);
+      evaluated.outcomes.push_back(evaluate(predictor, cases[i].fdi, crown, truth, options));
+    }
+    evaluation.cases.push_back(std::move(evaluated));
+  }
+  return evaluation;
+}
+
+MeanFigures mean_figures(const Evaluation& evaluation, std::size_t predictor) {
+  MeanFigures means;
+  for (const EvaluatedCase& evaluated : evaluation.cases) {
+    const std::optional<RootFigures>& figures = evaluated.outcomes.at(predictor).figures;
+    if (!figures) continue;
+    ++means.teeth;
+    means.root_length_abs_error_mm += std::abs(figures->root_length_error_mm);
+    means.root_length_bias_mm += figures->root_length_error_mm;
+    means.apex_distance_mm += figures->apex_distance_mm;
+    means.matched_apex_distance_mm += figures->matched_apex_distance_mm;
+    means.root_chamfer_mm += figures->root_chamfer_mm;
+    means.root_f_score += figures->root_f_score;
+    means.root_hausdorff95_mm += figures->root_hausdorff95_mm;
+    means.root_axis_angle_deg += figures->root_axis_angle_deg;
+    means.chamfer_l2_e3 += figures->chamfer_l2_e3;
+    means.f_score += figures->f_score;
+    means.right_root_counts += figures->true_apices.size() == figures->predicted_apices.size() ? 1 : 0;
+  }
+  if (means.teeth == 0) return means;
+  for (double* sum : {&means.root_length_abs_error_mm, &means.root_length_bias_mm, &means.apex_distance_mm,
+                      &means.matched_apex_distance_mm, &means.root_chamfer_mm, &means.root_f_score,
+                      &means.root_hausdorff95_mm, &means.root_axis_angle_deg, &means.chamfer_l2_e3, &means.f_score})
+    *sum /= means.teeth;
+  return means;
+}
+
+}  // namespace rhizodont

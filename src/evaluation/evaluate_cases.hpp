@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "evaluation/root_figures.hpp"
+#include "rhizodont/mesh.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rhizodont {
+
+/// A crown whose whole tooth is known.
+struct EvaluationCase {
+  int fdi = 0;                         ///< 11-18, 21-28, 31-38, 41-48
+  std::filesystem::path crown, truth;  ///< mesh files, mm
+};
+
+/// All pairs crown_FDI and tooth_FDI (.ply, .stl, .obj, .off, .vtp) of a folder, by FDI number. Throws InputError if
+/// the folder cannot be read or has no crown, if a crown has no tooth or no permanent tooth's number, or if two files
+/// stand for the same.
+std::vector<EvaluationCase> find_evaluation_cases(const std::filesystem::path& folder);
+
+/// Crown (mm) and FDI number to a whole tooth in the same place. May throw any error.
+using ToothPredictor = std::function<TriangleMesh(const TriangleMesh& crown, int fdi)>;
+
+struct NamedPredictor {
+  std::string name;
+  ToothPredictor predict;
+};
+
+/// What became of one crown in the hands of one predictor.
+struct CaseOutcome {
+  std::optional<RootFigures> figures;
+  std::string failure;  ///< a sentence why there are no figures; empty where there are
+  double seconds = 0;   ///< of the prediction alone
+};
+
+struct EvaluatedCase {
+  EvaluationCase files;
+  std::vector<CaseOutcome> outcomes;  ///< one per predictor
+};
+
+struct Evaluation {
+  std::vector<std::string> predictors;  ///< their names
+  std::vector<EvaluatedCase> cases;
+
+  /// True if a predictor gave no tooth, or none that could be compared, for one of the crowns.
+  bool has_failures() const;
+};
+
+/// Called before each prediction with the case, its place among all and the predictor's name.
+using EvaluationProgress =
+    std::function<void(const EvaluationCase& files, std::size_t place, const std::string& predictor)>;
+
+/// Has every predictor complete every crown, one after the other, and compares each tooth with the true one. The axis
+/// is that of the crown's border. Whatever a predictor or a file does wrong becomes the outcome's failure, but for
+/// UsageError, which is passed on. Throws UsageError for an option out of range.
+Evaluation evaluate_cases(const std::vector<EvaluationCase>& cases, const std::vector<NamedPredictor>& predictors,
+                          const RootFigureOptions& options = {}, const EvaluationProgress& progress = {});
+
+/// Means over the crowns that a predictor completed; 0 where there are none. Lengths in mm, angles in degrees.
+struct MeanFigures {
+  int teeth = 0;                        ///< over which the means are taken
+  double root_length_abs_error_mm = 0;  ///< mean of absolute values
+  double root_length_bias_mm = 0;       ///< mean of signed values
+  double apex_distance_mm = 0, matched_apex_distance_mm = 0;
+  double root_chamfer_mm = 0, root_f_score = 0, root_hausdorff95_mm = 0, root_axis_angle_deg = 0;
+  double chamfer_l2_e3 = 0, f_score = 0;
+  int right_root_counts = 0;  ///< teeth with as many roots as the true tooth
+};
+MeanFigures mean_figures(const Evaluation& evaluation, std::size_t predictor);
+
+/// What cone-beam computed tomography itself can tell about a root, beside which every error must be seen.
+struct CbctNoise {
+  double root_length_low_mm = -1.23, root_length_high_mm = 1.18;  ///< 95 % limits against extracted premolars
+  const char* root_length_source = "https://synapse.koreamed.org/articles/1081059";
+  double surface_rms_low_mm = 0.116, surface_rms_high_mm = 0.194;  ///< of the surface, by voxel size
+  const char* surface_source = "https://pmc.ncbi.nlm.nih.gov/articles/PMC4910372";
+};
+/// The same in one line of text.
+std::string describe(const CbctNoise& noise);
+
+/// For `nlohmann::ordered_json(value)`. Files appear by name, without folders.
+void to_json(nlohmann::ordered_json& json, const RootFigures& figures);
+void to_json(nlohmann::ordered_json& json, const MeanFigures& means);
+void to_json(nlohmann::ordered_json& json, const Evaluation& evaluation);
+
+/// One line per crown and predictor, a header line first; fields that do not exist are empty.
+std::string evaluation_csv(const Evaluation& evaluation);
+
+}  // namespace rhizodont

@@ -1,0 +1,120 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evaluation/evaluate_cases.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace rhizodont {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json outcome_json(const CaseOutcome& outcome) {
+  Json json{{"figures", nullptr}, {"failure", nullptr}};
+  if (outcome.figures) {
+    json["figures"] = *outcome.figures;
+    json["seconds"] = outcome.seconds;
+  } else {
+    json["failure"] = outcome.failure;
+  }
+  return json;
+}
+
+std::string quoted(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return result + "\"";
+}
+
+}  // namespace
+
+std::string describe(const CbctNoise& noise) {
+  return fmt::format(
+      "Noise of CBCT itself: root length of extracted premolars, 95 % limits {:+.2f} to {:+.2f} mm ({}); surface RMS "
+      "{:.3f} to {:.3f} mm ({}).",
+      noise.root_length_low_mm, noise.root_length_high_mm, noise.root_length_source, noise.surface_rms_low_mm,
+      noise.surface_rms_high_mm, noise.surface_source);
+}
+
+void to_json(Json& json, const RootFigures& figures) {
+  Json apices = Json::array();
+  for (const ApexPair& pair : figures.matched_apices)
+    apices.push_back({{"truth", pair.truth}, {"predicted", pair.predicted}, {"distance_mm", pair.distance_mm}});
+  json = Json{{"true_root_length_mm", figures.true_root_length_mm},
+              {"root_length_error_mm", figures.root_length_error_mm},
+              {"apex_distance_mm", figures.apex_distance_mm},
+              {"true_roots", figures.true_apices.size()},
+              {"predicted_roots", figures.predicted_apices.size()},
+              {"matched_apices", std::move(apices)},
+              {"matched_apex_distance_mm", figures.matched_apex_distance_mm},
+              {"root_chamfer_mm", figures.root_chamfer_mm},
+              {"root_f_score", figures.root_f_score},
+              {"root_hausdorff95_mm", figures.root_hausdorff95_mm},
+              {"root_axis_angle_deg", figures.root_axis_angle_deg},
+              {"chamfer_l2_e3", figures.chamfer_l2_e3},
+              {"f_score", figures.f_score}};
+}
+
+void to_json(Json& json, const MeanFigures& means) {
+  json = Json{{"teeth", means.teeth}};
+  if (means.teeth == 0) return;
+  json.update(Json{{"root_length_abs_error_mm", means.root_length_abs_error_mm},
+                   {"root_length_bias_mm", means.root_length_bias_mm},
+                   {"apex_distance_mm", means.apex_distance_mm},
+                   {"matched_apex_distance_mm", means.matched_apex_distance_mm},
+                   {"root_chamfer_mm", means.root_chamfer_mm},
+                   {"root_f_score", means.root_f_score},
+                   {"root_hausdorff95_mm", means.root_hausdorff95_mm},
+                   {"root_axis_angle_deg", means.root_axis_angle_deg},
+                   {"chamfer_l2_e3", means.chamfer_l2_e3},
+                   {"f_score", means.f_score},
+                   {"right_root_counts", means.right_root_counts}});
+}
+
+void to_json(Json& json, const Evaluation& evaluation) {
+  Json cases = Json::array(), means;
+  for (const EvaluatedCase& evaluated : evaluation.cases) {
+    Json outcomes;
+    for (std::size_t p = 0; p < evaluation.predictors.size(); ++p)
+      outcomes[evaluation.predictors[p]] = outcome_json(evaluated.outcomes[p]);
+    cases.push_back({{"fdi", evaluated.files.fdi},
+                     {"crown", evaluated.files.crown.filename().string()},
+                     {"truth", evaluated.files.truth.filename().string()},
+                     {"outcomes", std::move(outcomes)}});
+  }
+  for (std::size_t p = 0; p < evaluation.predictors.size(); ++p)
+    means[evaluation.predictors[p]] = mean_figures(evaluation, p);
+  const CbctNoise noise;
+  json = Json{{"cases", std::move(cases)},
+              {"means", std::move(means)},
+              {"cbct_noise",
+               {{"root_length_95_limits_mm", {noise.root_length_low_mm, noise.root_length_high_mm}},
+                {"root_length_source", noise.root_length_source},
+                {"surface_rms_mm", {noise.surface_rms_low_mm, noise.surface_rms_high_mm}},
+                {"surface_source", noise.surface_source}}}};
+}
+
+std::string evaluation_csv(const Evaluation& evaluation) {
+  std::string csv =
+      "fdi,predictor,true_root_length_mm,root_length_error_mm,apex_distance_mm,true_roots,predicted_roots,"
+      "matched_apex_distance_mm,root_chamfer_mm,root_f_score,root_hausdorff95_mm,root_axis_angle_deg,chamfer_l2_e3,"
+      "f_score,seconds,failure\n";
+  for (const EvaluatedCase& evaluated : evaluation.cases)
+    for (std::size_t p = 0; p < evaluation.predictors.size(); ++p) {
+      const CaseOutcome& outcome = evaluated.outcomes[p];
+      fmt::format_to(std::back_inserter(csv), "{},{},", evaluated.files.fdi, quoted(evaluation.predictors[p]));
+      if (const auto& f = outcome.figures)
+        fmt::format_to(std::back_inserter(csv),
+                       "{:.6g},{:.6g},{:.6g},{},{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.3f},\n",
+                       f->true_root_length_mm, f->root_length_error_mm, f->apex_distance_mm, f->true_apices.size(),
+                       f->predicted_apices.size(), f->matched_apex_distance_mm, f->root_chamfer_mm, f->root_f_score,
+                       f->root_hausdorff95_mm, f->root_axis_angle_deg, f->chamfer_l2_e3, f->f_score, outcome.seconds);
+      else
+        csv += std::string(13, ',') + quoted(outcome.failure) + "\n";
+    }
+  return csv;
+}
+
+}  // namespace rhizodont

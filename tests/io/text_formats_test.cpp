@@ -1,0 +1,100 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/io_test_tools.hpp"
+#include "mesh/float_bits.hpp"
+#include "mesh/test_meshes.hpp"
+
+#include <random>
+
+namespace rhizodont {
+namespace {
+
+using test::cube, test::expect_refused, test::load_bytes;
+
+const std::vector<Point> square{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+const std::vector<Triangle> fan{{0, 1, 2}, {0, 2, 3}};
+
+TEST(Obj, ReadsEveryKindOfFace) {
+  const std::string vertices =
+      "# square\r\nmtllib x.mtl\nv 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\n\tv  0\t1 0\nvt 0 0\nvn 0 0 1\ns off\n";
+  for (const char* face : {"f 1 2 3 4", "f 1/1 2/1 3/1 4/1", "f 1//1 2//1 3//1 4//1", "f 1/1/1 2/1/1 3/1/1 4/1/1",
+                           "f -4 -3 -2 -1", "f 1 2 \\\n 3 4", "f 1 2 3 4 # comment", "f 1 2 3\nf 1 3 4"}) {
+    const MeshFile file = load_bytes("a.obj", vertices + face + "\n");
+    EXPECT_EQ(file.mesh.vertices, square) << face;
+    EXPECT_EQ(file.mesh.triangles, fan) << face;
+  }
+}
+
+TEST(Obj, NumbersAreDoubles) {
+  const MeshFile file = load_bytes("a.obj", "v 0.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3");
+  EXPECT_EQ(file.mesh.vertices[0].x(), 0.1);
+  EXPECT_FALSE(file.coordinates_fit_float);
+}
+
+TEST(Obj, BadFilesAreRefusedWithTheirLine) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  expect_refused("a.obj", "", "empty");
+  expect_refused("a.obj", vertices, "no triangles");
+  expect_refused("a.obj", "\x01\x02\x03", "no triangles");
+  expect_refused("a.obj", vertices + "f 1 2 4\n", "line 4: vertex 4 does not exist, there are 3");
+  expect_refused("a.obj", vertices + "f 1 2 99999999999\n", "line 4: vertex 99999999999 does not exist");
+  expect_refused("a.obj", vertices + "f 0 1 2\n", "line 4: vertex 0 does not exist");
+  expect_refused("a.obj", vertices + "f 1 2 -4\n", "line 4: vertex -4 does not exist");
+  expect_refused("a.obj", vertices + "f 1 2\n", "line 4: a face needs three vertices");
+  expect_refused("a.obj", vertices + "f 1 b 3\n", "line 4: 'b'");
+  expect_refused("a.obj", "v 0 0\n" + vertices + "f 1 2 3\n", "line 1: a vertex needs three coordinates");
+  expect_refused("a.obj", vertices + "v 0 nan 0\nf 1 2 3\n", "line 4: a coordinate is not a finite number");
+  expect_refused("a.obj", vertices + "v 0 1e999 0\nf 1 2 3\n", "line 4: a coordinate is not a finite number");
+  expect_refused("a.obj", vertices + "v 0 0,5 0\nf 1 2 3\n", "line 4: '0,5' is not a number");
+}
+
+TEST(Obj, RoundTripKeepsDoublesAndFloatsToTheBit) {
+  const test::TemporaryFolder folder;
+  std::mt19937_64 engine(7);
+  MeshFile file{test::sphere(2), {}, {"a comment"}, true, {}};
+  for (std::size_t v = 0; v < file.mesh.vertices.size(); ++v)
+    for (double& x : file.mesh.vertices[v]) {
+      x *= std::ldexp(1.0 + static_cast<double>(engine() >> 12) * 0x1p-52, static_cast<int>(engine() % 40) - 20);
+      if (v % 2 == 0) x = nearest_float(x);
+    }
+  save_mesh(folder.path() / "a.obj", file);
+  EXPECT_TRUE(test::same_bits(load_mesh(folder.path() / "a.obj").mesh, file.mesh));
+}
+
+TEST(Off, ReadsItsRelatives) {
+  const std::string faces = "4 0 1 2 3  255 0 0\n";
+  const std::string plain = "0 0 0\n1 0 0\n\n# comment\n1 1 0\n0 1 0\n";
+  const std::string coloured = "0 0 0 255 0 0 255\n1 0 0 1 1 1 1\n1 1 0 .5 .5 .5 1 # red\n0 1 0 0 0 0 0\n";
+  for (const std::string& text :
+       {"OFF\n4 1 0\n" + plain + faces, "OFF 4 1 0\n" + plain + faces, "# first\nOFF # second\n\n4 1\n" + plain + faces,
+        "COFF\r\n4 1 0\r\n" + coloured + faces, "NOFF\n4 1 0\n" + coloured + faces, "STOFF\n4 1 4\n" + plain + faces}) {
+    const MeshFile file = load_bytes("a.off", text);
+    EXPECT_EQ(file.mesh.vertices, square) << text;
+    EXPECT_EQ(file.mesh.triangles, fan) << text;
+  }
+}
+
+TEST(Off, BadFilesAreRefusedWithTheirLine) {
+  const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n";
+  expect_refused("a.off", "", "empty");
+  expect_refused("a.off", "ply\n", "does not begin with 'OFF'");
+  expect_refused("a.off", "4OFF\n3 1 0\n" + vertices + "3 0 1 2\n", "three-dimensional");
+  expect_refused("a.off", "OFF BINARY\n", "binary OFF");
+  expect_refused("a.off", "OFF\n", "ends within its header");
+  expect_refused("a.off", "OFF\n3\n" + vertices, "line 2: the number of faces is missing");
+  expect_refused("a.off", "OFF\n-3 1 0\n" + vertices, "line 2");
+  expect_refused("a.off", "OFF\n3000000000000 1 0\n" + vertices + "3 0 1 2\n", "announces 3000000000000 vertices");
+  expect_refused("a.off", "OFF\n3 3000000000000 0\n" + vertices + "3 0 1 2\n", "announces 3000000000000 faces");
+  expect_refused("a.off", "OFF\n4 0 0\n" + vertices + "         ", "ends before vertex 3 of 4");
+  expect_refused("a.off", "OFF\n3 2 0\n" + vertices + "3 0 1 2\n", "ends before face 1 of 2");
+  expect_refused("a.off", "OFF\n3 0 0\n" + vertices, "no triangles");
+  expect_refused("a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 3\n", "line 6: vertex 3 does not exist");
+  expect_refused("a.off", "OFF\n3 1 0\n" + vertices + "3 0 1 -1\n", "line 6: vertex -1 does not exist");
+  expect_refused("a.off", "OFF\n3 1 0\n" + vertices + "3 0 1\n", "line 6: a face has fewer vertices");
+  expect_refused("a.off", "OFF\n3 1 0\n0 0 inf\n1 0 0\n0 1 0\n3 0 1 2\n",
+                 "line 3: a coordinate is not a finite number");
+  expect_refused("a.off", "OFF\n3 1 0\n0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "line 3: a vertex needs three coordinates");
+}
+
+}  // namespace
+}  // namespace rhizodont
