@@ -12,7 +12,7 @@
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/quality.hpp"
-#include "mesh/sampling.hpp"
+#include "pipeline/closed_crown.hpp"
 #include "pipeline/crown_input.hpp"
 #include "pipeline/guiding_cloud.hpp"
 #include "pipeline/models.hpp"
@@ -20,7 +20,6 @@
 #include "poisson/indicator.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
-#include "skirt/cap.hpp"
 #include "skirt/skirt.hpp"
 
 #include <fmt/format.h>
@@ -48,23 +47,6 @@ TriangleMesh scaled(TriangleMesh mesh, double factor) {
   return mesh;
 }
 
-/// Growth axis of a crown closed by a cap, from the mean crown that fits it best. Without a number all types are tried.
-Eigen::Vector3d axis_of_closed_crown(const TriangleMesh& crown, const Atlas& atlas, std::optional<int> fdi) {
-  const SurfaceSamples samples = sample_surface(crown, 1500, 1);
-  const OrientedPoints points{samples.points, samples.normals};
-  double best = std::numeric_limits<double>::max();
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
-  for (int type = 0; type < tooth_type_count; ++type) {
-    if (fdi && type != tooth_type_of_fdi(*fdi)) continue;
-    const bool right = fdi && is_right_side(*fdi);
-    const RigidFit fit = fit_mean_crown(points, atlas.types[static_cast<std::size_t>(type)], right, true);
-    if (fit.residual_mm >= best) continue;
-    best = fit.residual_mm;
-    axis = fit.frame.direction_to_world(Eigen::Vector3d::UnitZ());
-  }
-  return axis;
-}
-
 /// The part of the crown that the tooth will keep: open at the base, its border made of simple loops.
 KeptCrown open_crown(const TriangleMesh& crown, const Atlas& atlas, const CompleteOptions& options,
                      CompletionRecord& record) {
@@ -73,7 +55,7 @@ KeptCrown open_crown(const TriangleMesh& crown, const Atlas& atlas, const Comple
   if (closed) {
     if (options.cap == CapHandling::keep)
       throw InputError("The crown is closed and its cap was to be kept: there is no place for a root.");
-    const Cap cap = recognise_cap(crown, axis_of_closed_crown(crown, atlas, options.fdi));
+    const Cap cap = recognise_cap(crown, atlas, options.fdi);
     for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = !cap.is_cap[t];
     record.cap_dropped = true;
   }

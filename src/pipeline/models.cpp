@@ -21,7 +21,8 @@ CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
 
 namespace {
 
-/// share/rhizodont/models beside the folder that holds this code (bin, lib or lib/<architecture>); empty if not installed.
+/// share/rhizodont/models beside the folder that holds this code (bin, lib or lib/<architecture>); empty if not
+/// installed.
 std::filesystem::path installed_models() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&default_models_folder), &info) == 0 || !info.dli_fname) return {};

@@ -8,6 +8,7 @@
 
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/nearest_vertex.hpp"
 #include "rhizodont/error.hpp"
 #include "skirt/minimum_cut.hpp"
 
@@ -103,9 +104,63 @@ double outline_area(const TriangleMesh& mesh, const Eigen::Vector3d& axis) {
   return 0.5 * twice;
 }
 
+/// Mean angle, over the rim, between the surface's directions on both sides of it, each averaged over about a
+/// millimetre.
+double rim_bend(const TriangleMesh& mesh, const std::vector<bool>& is_cap) {
+  constexpr double width = 1.2;  // mm
+  std::vector<Point> centres;
+  for (const auto& [a, b, c] : mesh.triangles)
+    centres.push_back((mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)] +
+                       mesh.vertices[static_cast<std::size_t>(c)]) /
+                      3);
+  const NearestVertexIndex index(centres);
+  const TriangleAdjacency adjacency = triangle_adjacency(mesh);
+  double sum = 0;
+  double length = 0;
+  for (std::size_t t = 0; t < is_cap.size(); ++t) {
+    for (std::size_t e = 0; e < 3; ++e) {
+      const int other = adjacency.neighbours[t][e];
+      if (!is_cap[t] || other < 0 || is_cap[static_cast<std::size_t>(other)]) continue;
+      const Point& a = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][e])];
+      const Point& b = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][(e + 1) % 3])];
+      Eigen::Vector3d cap_side = Eigen::Vector3d::Zero();
+      Eigen::Vector3d crown_side = Eigen::Vector3d::Zero();
+      for (const NearVertex& near : index.within(0.5 * (a + b), width)) {
+        const auto i = static_cast<std::size_t>(near.index);
+        (is_cap[i] ? cap_side : crown_side) += triangle_area_vector(mesh, i);
+      }
+      const double angle = std::atan2(cap_side.cross(crown_side).norm(), cap_side.dot(crown_side));
+      sum += (b - a).norm() * angle;
+      length += (b - a).norm();
+    }
+  }
+  return length > 0 ? sum / length * 180 / std::numbers::pi : 0;
+}
+
+/// Mean bend per length of the part of the cap that lies across its direction, away from the rounded rim.
+double inner_curvature(const TriangleMesh& mesh, const Cap& cap) {
+  const TriangleAdjacency adjacency = triangle_adjacency(mesh);
+  double bend = 0;
+  double area = 0;
+  for (std::size_t t = 0; t < cap.is_cap.size(); ++t) {
+    const Eigen::Vector3d here = triangle_normal(mesh, t);
+    if (!cap.is_cap[t] || here.dot(cap.direction) < 0.7) continue;
+    area += triangle_area(mesh, t);
+    for (std::size_t e = 0; e < 3; ++e) {
+      const int other = adjacency.neighbours[t][e];
+      if (other < static_cast<int>(t) || !cap.is_cap[static_cast<std::size_t>(other)]) continue;
+      const Eigen::Vector3d there = triangle_normal(mesh, static_cast<std::size_t>(other));
+      const Point& a = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][e])];
+      const Point& b = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][(e + 1) % 3])];
+      bend += (b - a).norm() * std::atan2(here.cross(there).norm(), here.dot(there));
+    }
+  }
+  return area > 0 ? bend / area : 0;
+}
+
 }  // namespace
 
-Cap recognise_cap(const TriangleMesh& closed_crown, const Eigen::Vector3d& growth_axis, const CapOptions& options) {
+Cap find_cap(const TriangleMesh& closed_crown, const Eigen::Vector3d& growth_axis, const CapOptions& options) {
   Cap cap;
   cap.is_cap = cut_off_cap(closed_crown, growth_axis, options);
   keep_one_region(closed_crown, cap.is_cap, true);
@@ -118,15 +173,24 @@ Cap recognise_cap(const TriangleMesh& closed_crown, const Eigen::Vector3d& growt
     area += triangle_area(closed_crown, t);
     vector += triangle_area_vector(closed_crown, t);
   }
-  if (cap.triangles == 0 || cap.triangles == static_cast<int>(cap.is_cap.size())) throw InputError(no_cap_sentence);
+  if (cap.triangles == 0 || cap.triangles == static_cast<int>(cap.is_cap.size()) || !(vector.norm() > 0))
+    throw InputError(no_cap_sentence);
+  cap.direction = vector.normalized();
   cap.flatness = vector.norm() / area;
   cap.share = -vector.dot(growth_axis) / outline_area(closed_crown, growth_axis);
-  if (cap.flatness < options.least_flatness || cap.share < options.least_share)
-    throw InputError(
-        fmt::format("{} (The flattest region facing the root: flatness {:.2f} of {:.2f}, cross-section "
-                    "{:.2f} of {:.2f}.)",
-                    no_cap_sentence, cap.flatness, options.least_flatness, cap.share, options.least_share));
+  cap.rim = rim_bend(closed_crown, cap.is_cap);
+  cap.curvature = inner_curvature(closed_crown, cap);
   return cap;
+}
+
+void require_cap(const Cap& cap, const CapOptions& options) {
+  if (cap.flatness >= options.least_flatness && cap.share >= options.least_share && cap.rim >= options.least_rim)
+    return;
+  throw InputError(
+      fmt::format("{} (The region most like one: flatness {:.2f} of {:.2f}, cross-section {:.2f} of {:.2f}, "
+                  "bend at its rim {:.0f} of {:.0f} degrees.)",
+                  no_cap_sentence, cap.flatness, options.least_flatness, cap.share, options.least_share, cap.rim,
+                  options.least_rim));
 }
 
 }  // namespace rhizodont
