@@ -124,7 +124,7 @@ void Trainer::log(const std::string& line) const {
 
 /// Loss and gradients of samples `first` .. `first + batch / threads - 1`.
 Share Trainer::work(std::uint64_t first) const {
-  const TensorThreads one_thread(1);
+  const TensorThreads one_thread(1);  // counts per thread: this may be a fresh one
   const TrainingBatch batch = make_training_batch(provider_, first, options_.batch / options_.threads, options_, true);
   const Prediction prediction = network_->forward(batch.crowns, batch.target.seeds, precision_);
   const LossTerms terms = training_loss(prediction, batch.target, options_);
@@ -191,7 +191,6 @@ void Trainer::validate() {
     tensor.value.copy_(tensor.average);
     tensor.average.copy_(current);
   }
-  const TensorThreads threads(options_.threads);
   double whole = 0, root = 0, length = 0, normal = 0;
   const int batch = std::min(options_.batch, options_.validation_samples);
   const int batches = options_.validation_samples / batch;
@@ -331,6 +330,8 @@ TrainingResult Trainer::run() {
 TrainingResult train_completion(const SampleProvider& provider, const TrainingOptions& options) {
   check_options(options);
   if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
+  // OpenMP's threads would wait in busy loops between the few moments when they have work.
+  const TensorThreads one_thread(1);
   return Trainer(provider, options).run();
 }
 

@@ -17,11 +17,11 @@ struct CompletionShape {
   int input_points = 1024;  ///< crown points that the network looks at, >= centres_1
   int centres_1 = 256;      ///< points left after the grouper's first thinning, >= centres_2
   int centres_2 = 128;      ///< tokens of the encoder, >= 16
-  int width = 256;          ///< channels of a token, a multiple of `heads`
-  int heads = 4;            ///< attention heads, >= 1
+  int width = 192;          ///< channels of a token, a multiple of `heads`
+  int heads = 3;            ///< attention heads, >= 1
   int encoder_depth = 4;    ///< blocks, >= 1
-  int decoder_depth = 5;    ///< blocks, >= 1
-  int global_width = 512;   ///< channels of the global feature, >= 1
+  int decoder_depth = 4;    ///< blocks, >= 1
+  int global_width = 384;   ///< channels of the global feature, >= 1
   int queries = 256;        ///< patches of the output, >= 8
   int patch_points = 12;    ///< points per patch, >= 1
 };
@@ -43,7 +43,7 @@ struct TrainingOptions {
   double coarse_weight = 1;         ///< of the Chamfer term of the queries
   double denoise_weight = 0.5;      ///< of the Chamfer term of the denoising queries
   double normal_weight = 0.1;       ///< of the term 1 - cos, beside lengths in units of 12 mm
-  int denoise_queries = 64;         ///< extra queries in training, >= 0
+  int denoise_queries = 32;         ///< extra queries in training, >= 0
   double denoise_jitter = 0.04;     ///< standard deviation of their displacement, units of 12 mm
   bool half_precision = true;       ///< bfloat16 for matrix products where the processor has them
   int threads = 2;                  ///< each works on its share of a batch, >= 1, divides `batch`

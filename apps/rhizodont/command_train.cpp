@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "atlas/completion_sample.hpp"
+#include "commands.hpp"
+#include "learning/blas.hpp"
+#include "learning/train_completion.hpp"
+#include "rhizodont/error.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/core.h>
+#include <malloc.h>
+
+#include <ctime>
+#include <fstream>
+#include <memory>
+#include <string>
+
+namespace rhizodont::command_line {
+namespace {
+
+struct TrainCommand {
+  std::string data;
+  std::string export_to;
+  CompletionSampleOptions samples;
+  TrainingOptions options;
+};
+
+std::vector<Eigen::Vector3f> to_points(const std::vector<float>& xyz) {
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(xyz.size() / 3);
+  for (std::size_t i = 0; i + 2 < xyz.size(); i += 3) points.emplace_back(xyz[i], xyz[i + 1], xyz[i + 2]);
+  return points;
+}
+
+TrainingSample to_training_sample(const CompletionSample& sample) {
+  return {to_points(sample.input), to_points(sample.target), to_points(sample.target_normals), sample.target_root,
+          sample.type};
+}
+
+void train(const TrainCommand& command) {
+  static_assert(first_validation_sample == validation_seed_offset);
+  if (const std::string warning = blas_warning(); !warning.empty()) fmt::print(stderr, "rhizodont: {}\n", warning);
+  // Tensors of some megabytes come and go all the time: without this, each one is new pages from the kernel.
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+  const ToothFamilies families = load_tooth_families(command.data);
+  TrainingOptions options = command.options;
+  options.log = [](const std::string& line) {
+    fmt::print("{:%F %T} {}\n", fmt::localtime(std::time(nullptr)), line);
+    std::fflush(stdout);
+  };
+  const TrainingResult result = train_completion(
+      [&](std::uint64_t index) { return to_training_sample(make_completion_sample(families, index, command.samples)); },
+      options);
+  fmt::print("{} samples, best root Chamfer distance on held-out teeth {:.3f} mm; checkpoint in {}\n", result.samples,
+             result.best_root_chamfer, options.folder.string());
+}
+
+/// What the weights are, where they come from and what they must not be used for, beside the weight file.
+void write_model_card(const std::filesystem::path& weights, const std::map<std::string, std::string>& notes) {
+  const auto note = [&](const std::string& key) {
+    const auto found = notes.find(key);
+    return found == notes.end() ? std::string("not measured") : found->second;
+  };
+  std::filesystem::path path = weights;
+  path.replace_extension(".md");
+  std::ofstream card(path);
+  card << fmt::format(
+      R"(<!--
+SPDX-FileCopyrightText: Rhizodont contributors
+SPDX-License-Identifier: GPL-3.0-or-later
+-->
+# Completion network: crown points in, whole-tooth points out
+
+`{0}` holds the weights (safetensors, half precision, {1:.1f} MB). This card is written by `rhizodont train --export`.
+
+## What it is
+AdaPoinTr (Yu et al., 2023) with learned starting points per tooth type, {2} crown points in, {3} points with normals
+out, in the canonical pose (unit 12 mm). How it differs from the published network: `src/learning/adapointr.hpp`.
+
+## What it must not be used for
+Its roots are a guess from the crown alone: typical for a tooth of that type and size, not the patient's anatomy. They
+must not be used for diagnosis, for surgery or implant planning, or to judge root length, resorption or the distance to
+nerves and neighbouring roots. A root's length follows from its crown only weakly.
+
+## Data
+Teeth made on the fly by the project's generator (`src/atlas`): 16 permanent types, left side, right side mirrored. No
+sample, scan or patient's data is in the weights' training besides:
+- "Permanent Teeth", University of Dundee School of Dentistry (E. McDougall, A. Mason, M. Roughley), CC BY 4.0: 16
+  complete template teeth, scaled, bent and warped by the generator;
+- mean tooth dimensions after Wheeler and Ash and Nelson (facts).
+
+The weights are derived from these templates: keep the attribution when you pass them on.
+
+## Training
+`rhizodont train --data DATA --out training/run1 --seed {4}`, {5} samples in {6} steps; settings in
+`src/learning/train_completion.hpp`, exported on {7}.
+
+## Figures
+On {8} generated teeth that were never trained on (running mean of the weights):
+
+| figure | value |
+|---|---|
+| Chamfer-L1, whole tooth | {9} mm |
+| Chamfer-L1, part below the crop | {10} mm |
+| depth of the tooth's lowest point, mean absolute error | {11} mm |
+| normals, mean error | {12} degrees |
+
+Figures on real teeth: `rhizodont evaluate`.
+)",
+      weights.filename().string(), static_cast<double>(std::filesystem::file_size(weights)) * 1e-6,
+      note("shape.input_points"), std::stoi(note("shape.queries")) * std::stoi(note("shape.patch_points")),
+      note("training.seed"), note("training.samples"), note("training.steps"), note("training.date"),
+      note("validation.samples"), note("validation.tooth_chamfer_l1_mm"), note("validation.root_chamfer_l1_mm"),
+      note("validation.depth_error_mm"), note("validation.normal_error_degrees"));
+  if (!card) throw InputError("The model card " + path.string() + " cannot be written.");
+}
+
+void export_weights(const TrainCommand& command) {
+  const std::filesystem::path path = command.export_to;
+  const auto notes = export_completion(
+      command.options.folder, path,
+      {{"training.date", fmt::format("{:%F}", fmt::localtime(std::time(nullptr)))},
+       {"licence", "weights derived from \"Permanent Teeth\", University of Dundee School of Dentistry, CC BY 4.0"},
+       {"use", "not for diagnosis"}});
+  write_model_card(path, notes);
+  fmt::print("{}: {} samples trained\n", path.string(), notes.at("training.samples"));
+}
+
+}  // namespace
+
+void add_train_command(CLI::App& app) {
+  auto command = std::make_shared<TrainCommand>();
+  TrainingOptions& o = command->options;
+  CLI::App* train_app = app.add_subcommand("train", "Train the completion network on generated teeth");
+  auto* data = train_app->add_option("--data", command->data, "Folder with templates/ and anatomy.csv");
+  train_app->add_option("--out", o.folder, "Folder of checkpoints and best weights")->required();
+  train_app->add_flag("--resume", o.resume, "Go on from the folder's checkpoint");
+  train_app->add_option("--samples", o.samples, "Samples in all; the learning rate falls until there")
+      ->capture_default_str();
+  train_app->add_option("--hours", o.hours, "Stop after this time (0: no limit)")->capture_default_str();
+  train_app->add_option("--batch", o.batch, "Samples per step")->capture_default_str();
+  train_app->add_option("--rate", o.learning_rate, "Largest learning rate")->capture_default_str();
+  train_app->add_option("--threads", o.threads, "Threads; the batch is a multiple of them")->capture_default_str();
+  train_app->add_option("--seed", o.seed, "Seed of weights and noise")->capture_default_str();
+  auto* export_to = train_app->add_option(
+      "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");
+  train_app->callback([command, data, export_to] {
+    if (*export_to) {
+      export_weights(*command);
+    } else if (*data) {
+      train(*command);
+    } else {
+      throw UsageError("Training needs the folder with templates (--data).");
+    }
+  });
+}
+
+}  // namespace rhizodont::command_line
