@@ -19,7 +19,7 @@ struct IndicatorOptions {
   int degree = 2;          ///< 1 or 2: of the B-splines; 2 gives a continuous gradient
   double screening = 4.0;  ///< >= 0: pull of the samples towards one common value, relative to the gradient term
   double margin = 1.0;     ///< mm, > 0: least distance from the samples to the box outside which the function is 0
-  double samples_per_cell = 1.5;  ///< > 0: the normals of sparser samples are smeared wider, to have so many per cell
+  double samples_per_cell = 0.5;  ///< > 0: the normals of sparser samples are smeared wider, to have so many per cell
   int neighbours = 10;            ///< [3, 100]: neighbours from which a sample's share of the surface is estimated
   double tolerance = 1e-6;        ///< (0, 1): norm of the residual over the norm of the right-hand side
   int max_cycles = 60;            ///< >= 1: multigrid cycles before giving up
