@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// Crown to whole-tooth points: "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", section
+// 3.3, with the network in millimetres of the crown's own frame.
+#include "completion/complete_points.hpp"
+
+#include "learning/training_sample.hpp"
+#include "mesh/sampling.hpp"
+
+namespace rhizodont {
+
+OrientedPoints complete_points(const TriangleMesh& crown, int fdi, const CanonicalFrame& frame,
+                               const CompletionNetwork& network) {
+  constexpr std::uint64_t seed = 1;
+  const int type = fdi == 0 ? unknown_type : tooth_type_of_fdi(fdi);
+  // As many points as in training and as uniform by area: a denser sample thinned to the same number would be more even
+  // than anything the network has learned from.
+  const SurfaceSamples samples = sample_surface(crown, static_cast<std::size_t>(network.input_points()), seed);
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(samples.points.size());
+  for (const Point& p : samples.points) points.push_back(frame.to_canonical(p).cast<float>());
+
+  const CompletedPoints completed = network.complete(points, type);
+  OrientedPoints tooth;
+  for (std::size_t i = 0; i < completed.points.size(); ++i) {
+    tooth.points.push_back(frame.to_world(completed.points[i].cast<double>()));
+    tooth.normals.push_back(frame.direction_to_world(completed.normals[i].cast<double>()).normalized());
+  }
+  return tooth;
+}
+
+}  // namespace rhizodont
