@@ -94,7 +94,6 @@ struct ToothVariation {
   double blunt_share = 0.4;            ///< share of root tips that are rounded off, by up to 0.7 mm, 0..1
   double wear_mm = 0.8;                ///< upper end of the uniform loss of cusp height in a worn tooth, millimetres
   double wear_share = 0.4;             ///< share of worn teeth, 0..1
-  double crown_modes = 1.0;            ///< factor on the variation of the statistical crown model, where there is one
 };
 
 /// A generated whole tooth, millimetres, in the frame of FamilyTemplate, and what is known about it.

@@ -377,7 +377,10 @@ RigidFit fit_mean_crown(const OrientedPoints& points, const MeanCrown& mean, boo
   const Cloud crown = upright_cloud(points, upright), goal = cloud_of(mean.crown, upright.scale);
   const std::vector<Eigen::Matrix3d> rotations =
       any_orientation ? all_rotations(40, 12) : rotations_about_z(options.start_angles);
-  const Registered found = register_cloud(crown, goal, rotations, options, {0.8 * options.trim, options.trim});
+  RegistrationOptions wide = options;
+  if (any_orientation) wide.refined_starts = std::max(12, options.refined_starts);
+  // The cap over a base takes up to a third of a crown's surface.
+  const Registered found = register_cloud(crown, goal, rotations, wide, {0.65 * options.trim, options.trim});
   RigidFit fit;
   fit.frame = turned_frame(upright, found.at.rotation);
   fit.residual_mm = found.residual / found.at.scale;
