@@ -16,22 +16,44 @@
 namespace rhizodont {
 namespace {
 
-/// Keeps the component (joined over edges) with the most triangles.
-void keep_largest_component(const TriangleMesh& crown, std::vector<bool>& keep) {
-  const Submesh part = submesh(crown, keep);
+/// What a crown vertex is to the tooth.
+enum class Use : std::uint8_t { unreferenced, masked, pinched, kept };
+
+/// The triangles all of whose vertices are kept: a dropped triangle between kept ones would break the crown.
+std::vector<bool> induced_triangles(const TriangleMesh& crown, const std::vector<Use>& use) {
+  std::vector<bool> mask;
+  for (const Triangle& t : crown.triangles)
+    mask.push_back(
+        std::all_of(t.begin(), t.end(), [&](int v) { return use[static_cast<std::size_t>(v)] == Use::kept; }));
+  return mask;
+}
+
+/// Gives up the vertices outside of the component (joined over edges) with the most triangles; true if there were any.
+bool give_up_small_components(const TriangleMesh& crown, const std::vector<bool>& mask, std::vector<Use>& use) {
+  const Submesh part = submesh(crown, mask);
   const ConnectedComponents components = connected_components(part.mesh);
   std::vector<int> size(static_cast<std::size_t>(components.count), 0);
   for (const int c : components.of_triangle) ++size[static_cast<std::size_t>(c)];
   const int largest = static_cast<int>(std::max_element(size.begin(), size.end()) - size.begin());
+  std::vector<bool> in_largest(crown.vertices.size(), false);
   for (std::size_t t = 0; t < part.old_triangles.size(); ++t)
-    if (components.of_triangle[t] != largest) keep[static_cast<std::size_t>(part.old_triangles[t])] = false;
+    if (components.of_triangle[t] == largest)
+      for (const int v : crown.triangles[static_cast<std::size_t>(part.old_triangles[t])])
+        in_largest[static_cast<std::size_t>(v)] = true;
+  bool any = false;
+  for (std::size_t v = 0; v < use.size(); ++v) {
+    if (use[v] != Use::kept || in_largest[v]) continue;
+    use[v] = Use::pinched;
+    any = true;
+  }
+  return any;
 }
 
-/// Drops the triangles at vertices where more than one piece of the border passes; true if there were any.
-bool drop_pinches(const TriangleMesh& crown, std::vector<bool>& keep) {
+/// Gives up the vertices that more than one piece of the border passes; true if there were any.
+bool give_up_pinches(const TriangleMesh& crown, const std::vector<bool>& mask, std::vector<Use>& use) {
   std::map<std::pair<int, int>, int> half_edges;
-  for (std::size_t t = 0; t < keep.size(); ++t) {
-    if (!keep[t]) continue;
+  for (std::size_t t = 0; t < mask.size(); ++t) {
+    if (!mask[t]) continue;
     const Triangle& tri = crown.triangles[t];
     for (std::size_t i = 0; i < 3; ++i) ++half_edges[{tri[i], tri[(i + 1) % 3]}];
   }
@@ -39,12 +61,9 @@ bool drop_pinches(const TriangleMesh& crown, std::vector<bool>& keep) {
   for (const auto& [h, count] : half_edges)
     if (!half_edges.contains({h.second, h.first})) leaving[static_cast<std::size_t>(h.first)] += count;
   bool any = false;
-  for (std::size_t t = 0; t < keep.size(); ++t) {
-    const Triangle& tri = crown.triangles[t];
-    if (!keep[t] ||
-        std::none_of(tri.begin(), tri.end(), [&](int v) { return leaving[static_cast<std::size_t>(v)] > 1; }))
-      continue;
-    keep[t] = false;
+  for (std::size_t v = 0; v < use.size(); ++v) {
+    if (leaving[v] <= 1) continue;
+    use[v] = Use::pinched;
     any = true;
   }
   return any;
@@ -53,24 +72,21 @@ bool drop_pinches(const TriangleMesh& crown, std::vector<bool>& keep) {
 }  // namespace
 
 KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, const std::string& reason) {
-  std::vector<bool> mask = keep;
+  std::vector<Use> use(crown.vertices.size(), Use::unreferenced);
+  for (std::size_t t = 0; t < keep.size(); ++t)
+    for (const int v : crown.triangles[t])
+      use[static_cast<std::size_t>(v)] = std::max(use[static_cast<std::size_t>(v)], keep[t] ? Use::kept : Use::masked);
+  std::vector<bool> mask;
   do {
+    mask = induced_triangles(crown, use);
     if (std::none_of(mask.begin(), mask.end(), [](bool k) { return k; }))
       throw InputError("Nothing is left of the crown once its skirt and its cap are taken off.");
-    keep_largest_component(crown, mask);
-  } while (drop_pinches(crown, mask));
+  } while (give_up_small_components(crown, mask, use) || give_up_pinches(crown, mask, use));
 
-  enum class Use : std::uint8_t { none, masked, pinched, kept };
-  std::vector<Use> use(crown.vertices.size(), Use::none);
-  for (std::size_t t = 0; t < mask.size(); ++t)
-    for (const int v : crown.triangles[t]) {
-      const Use u = mask[t] ? Use::kept : (keep[t] ? Use::pinched : Use::masked);
-      use[static_cast<std::size_t>(v)] = std::max(use[static_cast<std::size_t>(v)], u);
-    }
   KeptCrown kept;
   for (std::size_t v = 0; v < use.size(); ++v) {
     const int id = static_cast<int>(v);
-    if (use[v] == Use::none) kept.dropped.push_back({id, "unreferenced"});
+    if (use[v] == Use::unreferenced) kept.dropped.push_back({id, "unreferenced"});
     if (use[v] == Use::masked) kept.dropped.push_back({id, reason});
     if (use[v] == Use::pinched) kept.dropped.push_back({id, "pinched border"});
   }

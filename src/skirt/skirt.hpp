@@ -23,9 +23,10 @@ struct KeptCrown {
   std::vector<DroppedVertex> dropped;  ///< ascending by vertex
 };
 
-/// Reduces a crown to the triangles with a true entry in `keep`, and then as far as needed for its border to be made of
-/// separate simple loops: triangles that hang on the rest by one vertex only go. `reason` is noted for the vertices
-/// that leave with the masked triangles. Throws InputError if nothing is left.
+/// Reduces a crown to the vertices of the triangles with a true entry in `keep`, with every triangle between them; then
+/// as far as needed for its border to be made of separate simple loops: vertices that the border passes twice, and what
+/// hangs on the rest by them only, go. `reason` is noted for the vertices outside of `keep`.
+/// Throws InputError if nothing is left.
 KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, const std::string& reason);
 
 }  // namespace rhizodont
