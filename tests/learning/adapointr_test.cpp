@@ -1,0 +1,218 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "learning/adapointr.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <random>
+
+#include "learning/capsules.hpp"
+#include "learning/losses.hpp"
+#include "learning/training_batch.hpp"
+#include "rhizodont/error.hpp"
+
+namespace rhizodont {
+namespace {
+
+using layers::Precision;
+
+TrainingBatch tiny_batch(int count = 3) {
+  return make_training_batch(testing::tiny_sample, 0, count, testing::tiny_options(), true);
+}
+
+TEST(AdaPoinTr, Shapes) {
+  torch::manual_seed(1);
+  const CompletionShape shape = testing::tiny_shape();
+  AdaPoinTr network(shape);
+  const TrainingBatch batch = tiny_batch();
+  const Prediction p = network->forward(batch.crowns, batch.target.seeds, Precision::single);
+  EXPECT_EQ(p.coarse.sizes(), (torch::IntArrayRef{3, 24, 3}));
+  EXPECT_EQ(p.fine.sizes(), (torch::IntArrayRef{3, 96, 3}));
+  EXPECT_EQ(p.normals.sizes(), (torch::IntArrayRef{3, 96, 3}));
+  EXPECT_EQ(p.denoised.sizes(), (torch::IntArrayRef{3, 8, 4, 3}));
+  EXPECT_TRUE(torch::allclose(p.normals.norm(2, -1), torch::ones({3, 96}), 0, 1e-3));
+  EXPECT_FALSE(network->forward(batch.crowns, {}, Precision::single).denoised.defined());
+}
+
+TEST(AdaPoinTr, DenoisingQueriesDoNotLeak) {
+  torch::manual_seed(2);
+  AdaPoinTr network(testing::tiny_shape());
+  const TrainingBatch batch = tiny_batch();
+  const Prediction with = network->forward(batch.crowns, batch.target.seeds, Precision::single);
+  const Prediction without = network->forward(batch.crowns, {}, Precision::single);
+  const Prediction moved = network->forward(batch.crowns, batch.target.seeds + 0.3, Precision::single);
+  for (const auto& other : {without, moved}) {
+    EXPECT_TRUE(torch::allclose(with.coarse, other.coarse, 0, 1e-5));
+    EXPECT_TRUE(torch::allclose(with.fine, other.fine, 0, 1e-5));
+    EXPECT_TRUE(torch::allclose(with.normals, other.normals, 0, 1e-4));
+  }
+  EXPECT_FALSE(torch::allclose(with.denoised - batch.target.seeds.unsqueeze(2),
+                               moved.denoised - (batch.target.seeds + 0.3).unsqueeze(2), 0, 1e-4));
+}
+
+TEST(AdaPoinTr, SamplesOfABatchDoNotMix) {
+  torch::manual_seed(3);
+  AdaPoinTr network(testing::tiny_shape());
+  const Prediction together = network->forward(tiny_batch(3).crowns, {}, Precision::single);
+  const Prediction alone = network->forward(tiny_batch(1).crowns, {}, Precision::single);
+  EXPECT_TRUE(torch::allclose(together.fine[0], alone.fine[0], 0, 1e-5));
+}
+
+TEST(AdaPoinTr, GradientReachesEveryParameter) {
+  torch::manual_seed(4);
+  AdaPoinTr network(testing::tiny_shape());
+  // All types, so that no row of the tables per type is left out.
+  const TrainingOptions options = testing::tiny_options();
+  const TrainingBatch batch = make_training_batch(testing::tiny_sample, 0, 17, options, true);
+  batch.crowns.types.copy_(torch::arange(17));
+  const Prediction p = network->forward(batch.crowns, batch.target.seeds, Precision::single);
+  training_loss(p, batch.target, options).total.backward();
+  for (const auto& item : network->named_parameters()) {
+    ASSERT_TRUE(item.value().grad().defined()) << item.key();
+    EXPECT_GT(item.value().grad().abs().max().item<double>(), 1e-9) << item.key();
+  }
+  EXPECT_GT(std::get<0>(network->anchors.grad().abs().flatten(1).max(1)).min().item<double>(), 0);
+}
+
+TEST(AdaPoinTr, CrownsDoNotDependOnTheOrderOfTheirPoints) {
+  const CompletionShape shape = testing::tiny_shape();
+  const TrainingSample sample = testing::capsule(5, 80, 10);
+  std::vector<float> given, shuffled;
+  std::vector<std::size_t> order(80);
+  std::iota(order.begin(), order.end(), 0);
+  for (const std::size_t i : order) given.insert(given.end(), sample.input[i].data(), sample.input[i].data() + 3);
+  std::shuffle(order.begin(), order.end(), std::mt19937(1));
+  for (const std::size_t i : order) shuffled.insert(shuffled.end(), sample.input[i].data(), sample.input[i].data() + 3);
+  const CrownBatch a = make_crown_batch(shape, {given}, {3}), b = make_crown_batch(shape, {shuffled}, {3});
+  EXPECT_TRUE(torch::equal(a.points, b.points));
+  EXPECT_TRUE(torch::equal(a.near_input, b.near_input));
+  EXPECT_TRUE(torch::equal(a.near_2, b.near_2));
+}
+
+TEST(AdaPoinTr, TypeMatters) {
+  torch::manual_seed(5);
+  AdaPoinTr network(testing::tiny_shape());
+  TrainingBatch batch = tiny_batch(1);
+  batch.crowns.types.fill_(2);
+  const torch::Tensor one = network->forward(batch.crowns, {}, Precision::single).coarse;
+  batch.crowns.types.fill_(unknown_type);
+  EXPECT_FALSE(torch::allclose(one, network->forward(batch.crowns, {}, Precision::single).coarse));
+}
+
+TEST(AdaPoinTr, HalfPrecisionIsClose) {
+  if (!layers::half_is_fast()) GTEST_SKIP() << "this processor multiplies bfloat16 slowly";
+  torch::manual_seed(6);
+  AdaPoinTr network(testing::tiny_shape());
+  const TrainingBatch batch = tiny_batch();
+  const torch::Tensor single = network->forward(batch.crowns, {}, Precision::single).fine;
+  const torch::Tensor half = network->forward(batch.crowns, {}, Precision::half).fine;
+  EXPECT_LT((single - half).abs().max().item<double>(), 0.05);
+}
+
+TEST(Layers, GatherMaxAgreesWithLoops) {
+  torch::manual_seed(7);
+  torch::Tensor values = torch::randn({2, 5, 3}, torch::requires_grad());
+  const torch::Tensor neighbours = torch::randint(0, 5, {2, 4, 3}, torch::kInt);
+  const torch::Tensor result = layers::gather_max(values, neighbours);
+  torch::Tensor expected = torch::zeros({2, 4, 3});
+  for (int b = 0; b < 2; ++b) {
+    for (int q = 0; q < 4; ++q)
+      expected[b][q] = std::get<0>(values[b].index_select(0, neighbours[b][q].to(torch::kLong)).max(0));
+  }
+  EXPECT_TRUE(torch::equal(result, expected));
+  const torch::Tensor weights = torch::randn({2, 4, 3});
+  const torch::Tensor own = torch::autograd::grad({(result * weights).sum()}, {values})[0];
+  const torch::Tensor reference = torch::autograd::grad({(expected * weights).sum()}, {values})[0];
+  EXPECT_TRUE(torch::allclose(own, reference, 0, 1e-6));
+}
+
+TEST(Layers, EdgeConvolutionEqualsItsDefinition) {
+  torch::manual_seed(8);
+  layers::EdgeConv conv(4, 6, false);
+  const torch::Tensor keys = torch::randn({1, 7, 4}), queries = torch::randn({1, 3, 4});
+  const torch::Tensor neighbours = torch::randint(0, 7, {1, 3, 5}, torch::kInt);
+  // With W1 the neighbours' weights and W2 = W_centre + W1: max over j of LeakyReLU(W1 (f_j - g) + W2 g + b).
+  const torch::Tensor w1 = conv->neighbour->weight, w2 = conv->centre->weight + w1, bias = conv->centre->bias;
+  torch::Tensor expected = torch::zeros({1, 3, 6});
+  for (int q = 0; q < 3; ++q) {
+    const torch::Tensor f = keys[0].index_select(0, neighbours[0][q].to(torch::kLong)), g = queries[0][q];
+    const torch::Tensor edges = torch::leaky_relu((f - g).matmul(w1.t()) + g.matmul(w2.t()).unsqueeze(0) + bias, 0.2);
+    expected[0][q] = std::get<0>(edges.max(0));
+  }
+  EXPECT_TRUE(torch::allclose(conv->forward(keys, queries, neighbours, Precision::single), expected, 0, 1e-5));
+}
+
+TEST(Layers, AttentionEqualsItsDefinition) {
+  torch::manual_seed(9);
+  layers::Attention attention(8, 2);
+  const torch::Tensor queries = torch::randn({2, 3, 8}), memory = torch::randn({2, 5, 8});
+  const torch::Tensor q = attention->to_query->forward(queries, Precision::single);
+  const torch::Tensor kv = attention->to_memory->forward(memory, Precision::single);
+  std::vector<torch::Tensor> heads;
+  for (int h = 0; h < 2; ++h) {
+    const torch::Tensor k = kv.narrow(2, 4 * h, 4), v = kv.narrow(2, 8 + 4 * h, 4);
+    heads.push_back(torch::softmax(q.narrow(2, 4 * h, 4).matmul(k.transpose(1, 2)) / 2, -1).matmul(v));
+  }
+  const torch::Tensor expected = attention->to_output->forward(torch::cat(heads, -1), Precision::single);
+  EXPECT_TRUE(torch::allclose(attention->forward(queries, memory, Precision::single), expected, 0, 1e-5));
+}
+
+TEST(Layers, IsolatedQueriesSeeOnlyTheFirstEntries) {
+  torch::manual_seed(10);
+  layers::Attention attention(8, 2);
+  torch::Tensor x = torch::randn({1, 6, 8});
+  const torch::Tensor before = attention->forward(x, x, Precision::single, 4);
+  x = x.clone();
+  x[0][5] += 1;
+  const torch::Tensor after = attention->forward(x, x, Precision::single, 4);
+  EXPECT_TRUE(torch::allclose(before.narrow(1, 0, 4), after.narrow(1, 0, 4), 0, 1e-6));
+  EXPECT_FALSE(torch::allclose(before[0][4], after[0][4], 0, 1e-4));
+}
+
+TEST(TrainingBatch, RefusesSamplesThatCannotBeUsed) {
+  const CompletionShape shape = testing::tiny_shape();
+  const TrainingSample good = testing::tiny_sample(1);
+  EXPECT_NO_THROW(check_sample(good, shape));
+  TrainingSample bad = good;
+  bad.input.pop_back();
+  EXPECT_THROW(check_sample(bad, shape), InputError);
+  bad = good;
+  bad.normals.pop_back();
+  EXPECT_THROW(check_sample(bad, shape), InputError);
+  bad = good;
+  bad.target[3].x() = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(check_sample(bad, shape), InputError);
+  bad = good;
+  bad.type = 17;
+  EXPECT_THROW(check_sample(bad, shape), InputError);
+}
+
+TEST(TrainingBatch, AnchorsLieOnTheType) {
+  const CompletionShape shape = testing::tiny_shape();
+  const auto anchors = initial_anchors(testing::tiny_sample, shape);
+  ASSERT_EQ(anchors.size(), 17U);
+  for (const auto& xyz : anchors) {
+    ASSERT_EQ(xyz.size(), 72U);
+    int below = 0;
+    for (std::size_t i = 0; i < 24; ++i) below += xyz[3 * i + 2] < -0.2F;
+    EXPECT_GE(below, 12);
+    EXPECT_LT(below, 24);
+  }
+}
+
+TEST(TrainingBatch, HidesTypesInTrainingOnly) {
+  TrainingOptions options = testing::tiny_options();
+  options.unknown_share = 0.5;
+  const auto hidden = [&](bool training) {
+    return (make_training_batch(testing::tiny_sample, 0, 64, options, training).crowns.types == unknown_type)
+        .sum()
+        .item<std::int64_t>();
+  };
+  EXPECT_GT(hidden(true), 16);
+  EXPECT_LT(hidden(true), 48);
+  EXPECT_EQ(hidden(false), 0);
+}
+
+}  // namespace
+}  // namespace rhizodont

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "learning/losses.hpp"
+
+#include <gtest/gtest.h>
+
+#include "learning/optimiser.hpp"
+#include "rhizodont/error.hpp"
+
+namespace rhizodont {
+namespace {
+
+/// Weighted Chamfer-L1 over full distance tables, in double.
+double brute_chamfer(const torch::Tensor& predicted, const torch::Tensor& target, const torch::Tensor& weights) {
+  const torch::Tensor table = torch::cdist(predicted.to(torch::kDouble), target.to(torch::kDouble), 2, 2);
+  const auto [forth, closest] = table.min(2);
+  const torch::Tensor back = std::get<0>(table.min(1)), w = weights.to(torch::kDouble);
+  const torch::Tensor shares = w.gather(1, closest);
+  return 0.5 * ((forth * shares).sum() / shares.sum() + (back * w).sum() / w.sum()).item<double>();
+}
+
+TEST(Losses, ChamferAgreesWithFullTables) {
+  torch::manual_seed(1);
+  const torch::Tensor predicted = torch::randn({3, 50, 3}), target = torch::randn({3, 70, 3});
+  const torch::Tensor weights = 1 + 2 * (torch::rand({3, 70}) > 0.5).to(torch::kFloat);
+  const double loss = weighted_chamfer(predicted, target, weights, closest_points(predicted, target)).item<double>();
+  EXPECT_NEAR(loss, brute_chamfer(predicted, target, weights), 1e-5);
+}
+
+TEST(Losses, ChamferOfAShiftedPointPair) {
+  const torch::Tensor predicted = torch::zeros({1, 1, 3});
+  const torch::Tensor target = torch::tensor({{{3.0F, 4.0F, 0.0F}}});
+  EXPECT_NEAR(
+      weighted_chamfer(predicted, target, torch::ones({1, 1}), closest_points(predicted, target)).item<double>(), 5,
+      1e-6);
+}
+
+TEST(Losses, WeightsPullTowardsTheRoot) {
+  // Two target points, one prediction on each side: an error at the root counts three times.
+  const torch::Tensor target = torch::tensor({{{0.0F, 0.0F, 0.0F}, {0.0F, 0.0F, -9.0F}}});
+  const torch::Tensor at_crown = torch::tensor({{{1.0F, 0.0F, 0.0F}, {0.0F, 0.0F, -9.0F}}});
+  const torch::Tensor at_root = torch::tensor({{{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, -9.0F}}});
+  const torch::Tensor weights = torch::tensor({{1.0F, 3.0F}});
+  const auto loss = [&](const torch::Tensor& p) {
+    return weighted_chamfer(p, target, weights, closest_points(p, target)).item<double>();
+  };
+  EXPECT_NEAR(loss(at_crown), 0.25, 1e-3);
+  EXPECT_NEAR(loss(at_root), 0.75, 1e-3);
+}
+
+TEST(Losses, ChamferGradientIsFiniteWherePointsCoincide) {
+  torch::Tensor predicted = torch::zeros({1, 4, 3}, torch::requires_grad());
+  const torch::Tensor target = torch::zeros({1, 4, 3});
+  weighted_chamfer(predicted, target, torch::ones({1, 4}), closest_points(predicted, target)).backward();
+  EXPECT_TRUE(torch::isfinite(predicted.grad()).all().item<bool>());
+}
+
+TEST(Losses, ChamferGradientAgreesWithDifferences) {
+  torch::manual_seed(2);
+  torch::Tensor predicted = torch::randn({1, 6, 3}, torch::requires_grad());
+  const torch::Tensor target = torch::randn({1, 9, 3}), weights = torch::rand({1, 9}) + 0.5;
+  weighted_chamfer(predicted, target, weights, closest_points(predicted, target)).backward();
+  const double h = 1e-3;
+  for (int i = 0; i < 18; ++i) {
+    torch::Tensor up = predicted.detach().clone(), down = up.clone();
+    up.view(-1)[i] += h;
+    down.view(-1)[i] -= h;
+    const double slope = (brute_chamfer(up, target, weights) - brute_chamfer(down, target, weights)) / (2 * h);
+    EXPECT_NEAR(predicted.grad().view(-1)[i].item<double>(), slope, 2e-3);
+  }
+}
+
+TEST(Losses, PatchChamferIsTheMeanOverPatches) {
+  torch::manual_seed(3);
+  const torch::Tensor predicted = torch::randn({2, 3, 5, 3}), target = torch::randn({2, 3, 5, 3});
+  double sum = 0;
+  for (int b = 0; b < 2; ++b) {
+    for (int p = 0; p < 3; ++p)
+      sum += brute_chamfer(predicted[b][p].unsqueeze(0), target[b][p].unsqueeze(0), torch::ones({1, 5}));
+  }
+  EXPECT_NEAR(patch_chamfer(predicted, target).item<double>(), sum / 6, 1e-5);
+}
+
+TEST(Losses, PerfectPredictionLeavesOnlyTheRoundingOfCoincidence) {
+  torch::manual_seed(4);
+  TargetBatch target;
+  target.points = torch::randn({2, 40, 3});
+  target.normals =
+      torch::nn::functional::normalize(torch::randn({2, 40, 3}), torch::nn::functional::NormalizeFuncOptions().dim(-1));
+  target.root = torch::ones({2, 40});
+  Prediction prediction;
+  prediction.coarse = target.points;
+  prediction.fine = target.points;
+  prediction.normals = target.normals;
+  const LossTerms terms = training_loss(prediction, target, TrainingOptions());
+  EXPECT_LT(terms.total.item<double>(), 5e-4);
+  prediction.normals = -target.normals;
+  EXPECT_NEAR(training_loss(prediction, target, TrainingOptions()).normal.item<double>(), 2, 1e-5);
+}
+
+TEST(Losses, GatherRows) {
+  const torch::Tensor points = torch::arange(2 * 3 * 2, torch::kFloat).view({2, 3, 2});
+  const torch::Tensor indices = torch::tensor({{2L, 0L}, {1L, 1L}});
+  const torch::Tensor expected = torch::tensor({{{4.0F, 5.0F}, {0.0F, 1.0F}}, {{8.0F, 9.0F}, {8.0F, 9.0F}}});
+  EXPECT_TRUE(torch::equal(gather_rows(points, indices), expected));
+}
+
+/// One parameter with the optimiser's state.
+std::vector<TrainedTensor> one_tensor(const torch::Tensor& value, bool decays) {
+  return {{"w", value, torch::zeros_like(value), torch::zeros_like(value), value.clone(), decays}};
+}
+
+TEST(Optimiser, FirstStepMovesEachWeightByTheRate) {
+  // After bias correction the first step of Adam is rate * sign(gradient).
+  auto tensors = one_tensor(torch::tensor({1.0F, 2.0F, 3.0F}), false);
+  StepOptions step;
+  step.learning_rate = 0.1;
+  step.clip = 1e9;
+  const double norm = adamw_step(tensors, {torch::tensor({3.0F, -4.0F, 0.0F})}, step);
+  EXPECT_NEAR(norm, 5, 1e-6);
+  EXPECT_TRUE(torch::allclose(tensors[0].value, torch::tensor({0.9F, 2.1F, 3.0F}), 0, 1e-6));
+  EXPECT_TRUE(torch::allclose(tensors[0].average, torch::tensor({0.99F, 2.01F, 3.0F}), 0, 1e-6));
+}
+
+TEST(Optimiser, DecayShrinksWithoutGradient) {
+  auto tensors = one_tensor(torch::tensor({2.0F}), true);
+  StepOptions step;
+  step.learning_rate = 0.1;
+  step.weight_decay = 0.5;
+  adamw_step(tensors, {torch::Tensor()}, step);
+  EXPECT_NEAR(tensors[0].value.item<double>(), 2 * (1 - 0.05), 1e-6);
+}
+
+TEST(Optimiser, ClippingKeepsTheMoments) {
+  auto tensors = one_tensor(torch::tensor({0.0F, 0.0F}), false);
+  StepOptions step;
+  step.clip = 1;
+  adamw_step(tensors, {torch::tensor({30.0F, 40.0F})}, step);
+  EXPECT_TRUE(torch::allclose(tensors[0].mean, torch::tensor({0.06F, 0.08F}), 0, 1e-6));
+}
+
+TEST(Optimiser, RefusesGradientsThatAreNotNumbers) {
+  auto tensors = one_tensor(torch::tensor({0.0F}), false);
+  EXPECT_THROW(adamw_step(tensors, {torch::tensor({std::numeric_limits<float>::quiet_NaN()})}, StepOptions()),
+               NoResultError);
+}
+
+TEST(Optimiser, FindsTheMinimumOfABowl) {
+  auto tensors = one_tensor(torch::tensor({4.0F, -3.0F}), false);
+  const torch::Tensor goal = torch::tensor({1.0F, 2.0F});
+  StepOptions step;
+  step.clip = 1e9;
+  for (step.step = 1; step.step <= 600; ++step.step) {
+    step.learning_rate = 0.05 * (1 - static_cast<double>(step.step) / 601);
+    adamw_step(tensors, {2 * (tensors[0].value - goal)}, step);
+  }
+  EXPECT_TRUE(torch::allclose(tensors[0].value, goal, 0, 1e-2));
+}
+
+}  // namespace
+}  // namespace rhizodont

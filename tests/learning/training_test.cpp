@@ -1,0 +1,228 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "learning/capsules.hpp"
+#include "learning/completion_network.hpp"
+#include "learning/safetensors.hpp"
+#include "learning/train_completion.hpp"
+#include "rhizodont/error.hpp"
+
+namespace rhizodont {
+namespace {
+
+class Training : public ::testing::Test {
+ protected:
+  std::filesystem::path folder_ =
+      std::filesystem::path(::testing::TempDir()) /
+      (std::string("rhizodont_train_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+
+  void SetUp() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string checkpoint(const std::string& run) const {
+    std::ifstream stream(folder_ / run / "checkpoint.safetensors", std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  /// Weights of a short run.
+  CompletionNetwork short_run(TrainingOptions options) const {
+    options.folder = folder_ / "short";
+    train_completion(testing::tiny_sample, options);
+    export_completion(options.folder, folder_ / "weights.safetensors", {{"note", "a test"}});
+    return CompletionNetwork::load(folder_ / "weights.safetensors");
+  }
+};
+
+TEST_F(Training, ResumedRunEqualsOneThatNeverStopped) {
+  TrainingOptions options = testing::tiny_options();
+  options.samples = 24;
+  options.threads = 1;
+  options.checkpoint_minutes = 0;
+  options.folder = folder_ / "whole";
+  EXPECT_EQ(train_completion(testing::tiny_sample, options).steps, 6U);
+
+  // The same schedule, stopped in the middle of a step, as by a kill.
+  options.folder = folder_ / "parts";
+  const auto stopping = [](std::uint64_t number) {
+    if (number == 12) throw NoResultError("stopped");
+    return testing::tiny_sample(number);
+  };
+  // Anchors come from sample 12 too: the provider that stops is given once they are known.
+  bool started = false;
+  const auto provider = [&](std::uint64_t number) {
+    if (number >= 299) started = true;
+    return started ? stopping(number) : testing::tiny_sample(number);
+  };
+  EXPECT_THROW(train_completion(provider, options), NoResultError);
+  options.resume = true;
+  const TrainingResult parts = train_completion(testing::tiny_sample, options);
+  EXPECT_EQ(parts.steps, 6U);
+  EXPECT_EQ(checkpoint("parts"), checkpoint("whole"));
+}
+
+TEST_F(Training, SameSeedSameWeights) {
+  TrainingOptions options = testing::tiny_options();
+  options.samples = 12;
+  for (const char* run : {"a", "b"}) {
+    options.folder = folder_ / run;
+    train_completion(testing::tiny_sample, options);
+  }
+  EXPECT_EQ(checkpoint("a"), checkpoint("b"));
+  options.folder = folder_ / "c";
+  options.seed = 2;
+  train_completion(testing::tiny_sample, options);
+  EXPECT_NE(checkpoint("a"), checkpoint("c"));
+}
+
+TEST_F(Training, LearnsATinySetByHeart) {
+  TrainingOptions options = testing::tiny_options();
+  options.samples = 1600;
+  options.learning_rate = 4e-3;
+  options.unknown_share = 0;
+  options.denoise_queries = 4;
+  std::vector<double> losses;
+  options.log_steps = 20;
+  options.log = [&](const std::string& line) {
+    const std::size_t at = line.find("loss ");
+    if (at != std::string::npos) losses.push_back(std::stod(line.substr(at + 5)));
+  };
+  train_completion([](std::uint64_t number) { return testing::tiny_sample(number % 4); }, options);
+  ASSERT_EQ(losses.size(), 20U);
+  EXPECT_LT(losses.back(), 0.5 * losses.front());
+}
+
+TEST_F(Training, ValidationKeepsTheBestWeights) {
+  TrainingOptions options = testing::tiny_options();
+  options.validation_samples = 8;
+  std::vector<std::string> lines;
+  options.log = [&](const std::string& line) { lines.push_back(line); };
+  options.folder = folder_ / "run";
+  const TrainingResult result = train_completion(testing::tiny_sample, options);
+  EXPECT_GT(result.best_root_chamfer, 0);
+  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(),
+                          [](const std::string& line) { return line.starts_with("validation at 40"); }));
+  const auto notes = export_completion(options.folder, folder_ / "weights.safetensors", {{"note", "kept"}});
+  EXPECT_EQ(notes.at("note"), "kept");
+  EXPECT_EQ(notes.at("training.samples"), "40");
+  EXPECT_NEAR(std::stod(notes.at("validation.root_chamfer_l1_mm")), result.best_root_chamfer, 6e-4);
+  for (const auto& [name, tensor] : read_safetensors(folder_ / "weights.safetensors").tensors)
+    EXPECT_EQ(tensor.type, TensorType::float16) << name;
+}
+
+TEST_F(Training, ValidationSamplesAreNeverTrainedOn) {
+  TrainingOptions options = testing::tiny_options();
+  options.validation_samples = 4;
+  options.samples = 8;
+  std::uint64_t validated = 0, trained = 0;
+  options.threads = 1;
+  options.unknown_share = 0;
+  train_completion(
+      [&](std::uint64_t number) {
+        (number >= first_validation_sample ? validated : trained) += 1;
+        return testing::tiny_sample(number % first_validation_sample);
+      },
+      options);
+  EXPECT_EQ(validated, 4U);
+  EXPECT_EQ(trained, 300U + 8U);  // the anchors' look at the types, then the steps
+}
+
+TEST_F(Training, RefusesOptionsAndFoldersThatDoNotFit) {
+  TrainingOptions options = testing::tiny_options();
+  options.batch = 3;
+  EXPECT_THROW(train_completion(testing::tiny_sample, options), UsageError);
+  options = testing::tiny_options();
+  options.shape.width = 33;
+  EXPECT_THROW(train_completion(testing::tiny_sample, options), UsageError);
+  EXPECT_THROW(export_completion(folder_, folder_ / "weights.safetensors", {}), InputError);
+
+  options = testing::tiny_options();
+  options.samples = 4;
+  options.folder = folder_ / "run";
+  train_completion(testing::tiny_sample, options);
+  options.resume = true;
+  options.shape.decoder_depth = 3;
+  EXPECT_THROW(train_completion(testing::tiny_sample, options), InputError);
+  options.shape.decoder_depth = 2;
+  std::filesystem::resize_file(folder_ / "run" / "checkpoint.safetensors", 1000);
+  EXPECT_THROW(train_completion(testing::tiny_sample, options), InputError);
+}
+
+TEST_F(Training, NetworkIsRepeatableAndIgnoresOrder) {
+  const CompletionNetwork network = short_run(testing::tiny_options());
+  EXPECT_EQ(network.input_points(), 64);
+  EXPECT_EQ(network.output_points(), 96);
+  EXPECT_EQ(network.metadata().at("note"), "a test");
+  std::vector<Eigen::Vector3f> crown = testing::capsule(77, 90, 10).input;
+  const CompletedPoints first = network.complete(crown, 3);
+  ASSERT_EQ(first.points.size(), 96U);
+  ASSERT_EQ(first.normals.size(), 96U);
+  for (const Eigen::Vector3f& n : first.normals) EXPECT_NEAR(n.norm(), 1, 1e-5);
+  std::shuffle(crown.begin(), crown.end(), std::mt19937(1));
+  EXPECT_EQ(network.complete(crown, 3).points, first.points);
+  std::vector<CompletedPoints> elsewhere(3);
+  std::vector<std::thread> threads;
+  for (auto& result : elsewhere) threads.emplace_back([&] { result = network.complete(crown, 3); });
+  for (auto& thread : threads) thread.join();
+  for (const auto& result : elsewhere) {
+    EXPECT_EQ(result.points, first.points);
+    EXPECT_EQ(result.normals, first.normals);
+  }
+  EXPECT_NE(network.complete(crown, unknown_type).points, first.points);
+}
+
+TEST_F(Training, NetworkRefusesBadCrowns) {
+  TrainingOptions options = testing::tiny_options();
+  options.samples = 4;
+  const CompletionNetwork network = short_run(options);
+  const std::vector<Eigen::Vector3f> crown = testing::capsule(78, 64, 10).input;
+  EXPECT_NO_THROW(network.complete(crown, 0));
+  EXPECT_THROW(network.complete(crown, 17), UsageError);
+  EXPECT_THROW(network.complete(crown, -1), UsageError);
+  EXPECT_THROW(network.complete(std::span(crown).first(63), 0), InputError);
+  auto bad = crown;
+  bad[5].y() = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(network.complete(bad, 0), InputError);
+  bad = crown;
+  bad[5].y() = 12;
+  EXPECT_THROW(network.complete(bad, 0), InputError);
+  EXPECT_THROW(network.complete(std::vector<Eigen::Vector3f>(64, Eigen::Vector3f(1, 1, 1)), 0), InputError);
+}
+
+TEST_F(Training, NetworkRefusesOtherWeightFiles) {
+  TrainingOptions options = testing::tiny_options();
+  options.samples = 4;
+  short_run(options);
+  const std::filesystem::path path = folder_ / "weights.safetensors";
+  const TensorFile good = read_safetensors(path);
+  const auto refused = [&](const TensorFile& file) {
+    write_safetensors(path, file);
+    EXPECT_THROW(CompletionNetwork::load(path), InputError);
+  };
+  TensorFile bad = good;
+  bad.metadata.erase("format");
+  refused(bad);
+  bad = good;
+  bad.metadata["shape.width"] = "wide";
+  refused(bad);
+  bad = good;
+  bad.metadata["shape.width"] = "64";
+  refused(bad);
+  bad = good;
+  bad.tensors.erase(bad.tensors.begin());
+  refused(bad);
+  bad = good;
+  auto& values = bad.tensors.at("head_out.bias");
+  values = store_floats(std::vector<float>(24, std::numeric_limits<float>::quiet_NaN()), {24}, TensorType::float16);
+  refused(bad);
+  write_safetensors(path, good);
+  EXPECT_NO_THROW(CompletionNetwork::load(path));
+}
+
+}  // namespace
+}  // namespace rhizodont
