@@ -21,7 +21,7 @@ struct CheckCommand {
   JsonOption json;
 };
 
-void row(const char* name, const std::string& value) { fmt::print("  {:<34}{}\n", name, value); }
+void row(const char* name, const std::string& value) { fmt::print("  {:<36}{}\n", name, value); }
 
 template <class Number>
 void row(const char* name, Number value, const char* unit = "") {

@@ -19,7 +19,7 @@ struct MeasureCommand {
   JsonOption json;
 };
 
-void row(const char* name, const std::string& value) { fmt::print("  {:<34}{}\n", name, value); }
+void row(const char* name, const std::string& value) { fmt::print("  {:<36}{}\n", name, value); }
 
 void print_table(const MeshMeasures& m) {
   fmt::print("Triangles\n");
