@@ -84,8 +84,8 @@ must not be used for diagnosis, for surgery or implant planning, or to judge roo
 nerves and neighbouring roots. A root's length follows from its crown only weakly.
 
 ## Data
-Teeth made on the fly by the project's generator (`src/atlas`): 16 permanent types, left side, right side mirrored. No
-sample, scan or patient's data is in the weights' training besides:
+Teeth made on the fly by the project's generator (`src/atlas`): 16 permanent types, the right side mirrored to the left.
+The generator draws on two sources, and training on nothing else:
 - "Permanent Teeth", University of Dundee School of Dentistry (E. McDougall, A. Mason, M. Roughley), CC BY 4.0: 16
   complete template teeth, scaled, bent and warped by the generator;
 - mean tooth dimensions after Wheeler and Ash and Nelson (facts).
