@@ -30,6 +30,7 @@ struct SynthCommand {
   bool crowns = false;
   bool clean_cut = false;
   double edge_mm = 0;
+  std::string crown_format = "ply";
   double noise_mm = 0.005;
 };
 
@@ -103,7 +104,7 @@ void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
       if (command.edge_mm > 0) crown.mesh = scanner_mesh(crown.mesh, command.edge_mm, command.noise_mm, seed);
       for (Point& p : crown.mesh.vertices) p = p.cast<float>().cast<double>().eval();
       crown.comments = file.comments;
-      save_mesh(folder / ("crown_" + name), crown);
+      save_mesh(folder / fmt::format("crown_{}_{}.{}", command.fdi, seed, command.crown_format), crown);
       drawn.push_back(crown.mesh);
       colours.push_back({plain_colour()});
     }
@@ -147,6 +148,9 @@ void add_synth_command(CLI::App& app) {
   synth->add_flag("--clean-cut", command->clean_cut, "Crop just above the cemento-enamel junction, without gaps");
   synth->add_option("--edge", command->edge_mm, "Remesh the crowns like a scan, edge length in mm")
       ->check(CLI::Range(0.1, 1.0));
+  synth->add_option("--crown-format", command->crown_format, "File format of the crowns")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"ply", "stl", "obj"}));
   synth->add_option("--noise", command->noise_mm, "Noise of remeshed crowns along their normals, mm")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 0.1));
