@@ -6,6 +6,7 @@
 #include "atlas/tooth_family.hpp"
 #include "commands.hpp"
 #include "evaluation/render.hpp"
+#include "mesh/float_bits.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
@@ -44,7 +45,7 @@ TriangleMesh mirrored(TriangleMesh mesh) {
 MeshFile tooth_file(const SyntheticTooth& tooth, const GumLine& line, bool right_side) {
   MeshFile file;
   file.mesh = right_side ? mirrored(tooth.mesh) : tooth.mesh;
-  for (Point& p : file.mesh.vertices) p = p.cast<float>().cast<double>().eval();
+  for (Point& p : file.mesh.vertices) p = nearest_float(p);
   VertexAttribute source{AttributeType::uint8, {}}, enamel{AttributeType::uint8, {}};
   for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v) {
     const Point& p = tooth.mesh.vertices[v];
@@ -102,7 +103,7 @@ void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
       MeshFile crown;
       crown.mesh = right_side ? mirrored(cropped.mesh) : cropped.mesh;
       if (command.edge_mm > 0) crown.mesh = scanner_mesh(crown.mesh, command.edge_mm, command.noise_mm, seed);
-      for (Point& p : crown.mesh.vertices) p = p.cast<float>().cast<double>().eval();
+      for (Point& p : crown.mesh.vertices) p = nearest_float(p);
       crown.comments = file.comments;
       save_mesh(folder / fmt::format("crown_{}_{}.{}", command.fdi, seed, command.crown_format), crown);
       drawn.push_back(crown.mesh);

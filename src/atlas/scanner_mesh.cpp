@@ -7,6 +7,7 @@
 #include "atlas/random_stream.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/diagnosis.hpp"
+#include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
@@ -60,8 +61,7 @@ TriangleMesh scanner_mesh(const TriangleMesh& crown, double edge_mm, double nois
   const auto normals = vertex_normals(mesh);
   RandomStream random(seed, 300);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    mesh.vertices[v] =
-        (mesh.vertices[v] + random.normal(0.0, noise_mm) * normals[v]).cast<float>().cast<double>().eval();
+    mesh.vertices[v] = nearest_float(Point(mesh.vertices[v] + random.normal(0.0, noise_mm) * normals[v]));
   const Diagnosis diagnosis = diagnose(mesh);
   if (!diagnosis.is_oriented_manifold() || diagnosis.border_loop_count != 1 || diagnosis.euler_number != 1 ||
       !self_intersecting_triangles(mesh).empty())
