@@ -44,12 +44,18 @@ double spread(const std::vector<Point>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// Direction of the largest extent, its wider end up.
+/// Direction of the largest extent, either way.
 Eigen::Vector3d long_axis(const std::vector<Point>& points) {
   const Point mean = mean_of(points);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (const Point& p : points) covariance += (p - mean) * (p - mean).transpose();
-  const Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(2);
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(2);
+}
+
+/// The long axis with its wider end up.
+Eigen::Vector3d axis_to_wider_end(const std::vector<Point>& points) {
+  const Point mean = mean_of(points);
+  const Eigen::Vector3d axis = long_axis(points);
   // The third moment of width: positive where what lies above the middle is the wider part.
   double lean = 0;
   for (const Point& p : points) {
@@ -66,7 +72,7 @@ std::vector<bool> enamel_vertices(const MeshFile& file) {
   if (label != file.vertex_attributes.end())
     for (std::size_t v = 0; v < count; ++v) enamel[v] = label->second.values[v] == 1;
   if (std::find(enamel.begin(), enamel.end(), true) != enamel.end()) return enamel;
-  const Eigen::Vector3d axis = long_axis(file.mesh.vertices);
+  const Eigen::Vector3d axis = axis_to_wider_end(file.mesh.vertices);
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
   for (const Point& p : file.mesh.vertices) low = std::min(low, p.dot(axis)), high = std::max(high, p.dot(axis));
   for (std::size_t v = 0; v < count; ++v)
@@ -87,14 +93,15 @@ struct Registration {
       : options(given),
         axis(crown_growth_axis(crown)),
         target(sample_surface(crown, options.samples, 1).points),
-        source(sample_surface(tooth.crown, options.samples, 1).points) {
+        source(sample_surface(tooth.crown, options.samples, 1).points),
+        whole_source(sample_surface(tooth.mesh, 2 * options.samples, 1).points) {
     for (const Triangle& triangle : crown.triangles)
       for (const int v : triangle) border = std::min(border, crown.vertices[static_cast<std::size_t>(v)].dot(axis));
   }
 
   const TemplateFitOptions& options;
   Eigen::Vector3d axis;  ///< of the crown
-  NearestVertexIndex target, source;
+  NearestVertexIndex target, source, whole_source;
   double border = std::numeric_limits<double>::infinity();  ///< lowest height of the crown, mm along its axis
 };
 
@@ -105,7 +112,8 @@ struct Pairs {
 };
 
 /// The template's crown may reach below the scanned one and be worn or shaped otherwise: its points near and below the
-/// border and the farthest of the rest are left out. All of the scanned crown's points take part.
+/// border and the farthest of the rest are left out. All of the scanned crown's points take part, also with the
+/// template's root: a scan may reach below the cemento-enamel junction.
 Pairs find_pairs(const Registration& r, const Similarity& similarity, double scale) {
   Pairs pairs;
   std::vector<std::pair<double, std::pair<std::size_t, int>>> near;
@@ -124,8 +132,8 @@ Pairs find_pairs(const Registration& r, const Similarity& similarity, double sca
   const Similarity back = similarity.inverse();
   double sum = 0;
   for (const Point& p : r.target.points()) {
-    const NearVertex hit = r.source.nearest(back * p);  // a similarity keeps who is nearest
-    pairs.from.push_back(r.source.points()[static_cast<std::size_t>(hit.index)]);
+    const NearVertex hit = r.whole_source.nearest(back * p);  // a similarity keeps who is nearest
+    pairs.from.push_back(r.whole_source.points()[static_cast<std::size_t>(hit.index)]);
     pairs.to.push_back(p);
     sum += scale * std::sqrt(hit.squared_distance);
   }
@@ -192,7 +200,8 @@ TemplateTooth load_template_tooth(const std::filesystem::path& folder, int fdi) 
     tooth.mesh = mirrored(tooth.mesh);
     tooth.crown = mirrored(tooth.crown);
   }
-  tooth.axis = crown_growth_axis(tooth.crown);
+  const Eigen::Vector3d axis = long_axis(tooth.mesh.vertices);
+  tooth.axis = axis.dot(crown_growth_axis(tooth.crown)) > 0 ? axis : Eigen::Vector3d(-axis);
   return tooth;
 }
 

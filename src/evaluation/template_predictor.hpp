@@ -13,7 +13,7 @@ namespace rhizodont {
 struct TemplateTooth {
   TriangleMesh mesh;              ///< closed, outward, mm
   TriangleMesh crown;             ///< its triangles of enamel
-  Eigen::Vector3d axis{0, 0, 1};  ///< unit, root to crown
+  Eigen::Vector3d axis{0, 0, 1};  ///< unit, root to crown: the longest extent
 };
 
 /// Reads folder/tooth_FDI.ply of the left side (21-28, 31-38), mirrored for a tooth of the right side. The file's
@@ -24,8 +24,8 @@ TemplateTooth load_template_tooth(const std::filesystem::path& folder, int fdi);
 
 struct TemplateFitOptions {
   int start_rotations = 12;         ///< >= 1: starting positions, evenly turned about the growth axis
-  int iterations = 30;              ///< >= 1, of each start
-  std::size_t samples = 1500;       ///< >= 100: points on either crown
+  int iterations = 25;              ///< >= 1, of each start
+  std::size_t samples = 1500;       ///< >= 100: points on either crown, twice as many on the whole template
   double trim = 0.85;               ///< (0, 1]: share of the template's points, the nearest, that take part
   double border_margin_mm = 0.3;    ///< >= 0: template points lower than this above the crown's border do not take part
   double largest_scale_step = 1.1;  ///< > 1: of one iteration, and its inverse the smallest

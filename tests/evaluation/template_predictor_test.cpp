@@ -121,9 +121,12 @@ TEST_F(TemplateFolder, BadInputIsRefused) {
 TEST(TemplatePredictor, RecoversAMovedTemplateOfARealTooth) {
   const fs::path folder = test::shared_folder() / "data/templates";
   if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
+  TemplateFitOptions to_the_end;
+  to_the_end.iterations = 100;
+  to_the_end.samples = 800;
   for (const int fdi : {23, 46}) {
     const TemplateTooth tooth = load_template_tooth(folder, fdi);
-    const TriangleMesh fitted = fit_template(test::changed(tooth.crown, moved), tooth);
+    const TriangleMesh fitted = fit_template(test::changed(tooth.crown, moved), tooth, to_the_end);
     EXPECT_LT(largest_distance(fitted, test::changed(tooth.mesh, moved)), 0.2) << fdi;
   }
 }

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "commands.hpp"
+#include "evaluation/evaluate_cases.hpp"
+#include "evaluation/template_predictor.hpp"
+#include "json_option.hpp"
+#include "learning/blas.hpp"
+#include "rhizodont/complete.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace rhizodont::command_line {
+namespace {
+
+struct EvaluateCommand {
+  std::string cases, templates, models, csv;
+  JsonOption json;
+  CompleteOptions options;
+};
+
+NamedPredictor rhizodont_predictor(const EvaluateCommand& command) {
+  if (const std::string warning = blas_warning(); !warning.empty()) fmt::print(stderr, "rhizodont: {}\n", warning);
+  const auto models = std::make_shared<const CompletionModels>(
+      CompletionModels::load(command.models.empty() ? default_models_folder() : std::filesystem::path(command.models)));
+  return {"rhizodont", [models, options = command.options](const TriangleMesh& crown, int fdi) {
+            CompleteOptions of_this = options;
+            of_this.fdi = fdi;
+            return complete_tooth(crown, *models, of_this).mesh;
+          }};
+}
+
+NamedPredictor template_predictor(const std::string& folder) {
+  return {"template", [folder](const TriangleMesh& crown, int fdi) {
+            return fit_template(crown, load_template_tooth(folder, fdi));
+          }};
+}
+
+/// One line that says which tooth is at work, on a terminal only.
+EvaluationProgress progress_line(std::size_t cases) {
+  if (!isatty(STDERR_FILENO)) return {};
+  return [cases](const EvaluationCase& files, std::size_t place, const std::string& predictor) {
+    fmt::print(stderr, "\r\033[Ktooth {} ({} of {}), {} ...", files.fdi, place + 1, cases, predictor);
+    std::fflush(stderr);
+  };
+}
+
+void clear_line(const EvaluationProgress& progress) {
+  if (progress) fmt::print(stderr, "\r\033[K");
+}
+
+void print_header() {
+  fmt::print("{:<5}{:<10}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}\n", "", "", "length", "apex", "matched",
+             "root", "root F", "root", "axis", "Chamfer", "F at", "roots");
+  fmt::print("{:<5}{:<10}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}\n", "FDI", "by", "error", "off", "apices",
+             "Chamfer", "0.5 mm", "H 95 %", "angle", "L2 x1000", "1 %", "true:got");
+}
+
+void print_row(int fdi, const std::string& predictor, const CaseOutcome& outcome) {
+  if (!outcome.figures) {
+    fmt::print("{:<5}{:<10}  no figures: {}\n", fdi, predictor, outcome.failure);
+    return;
+  }
+  const RootFigures& f = *outcome.figures;
+  fmt::print("{:<5}{:<10}{:>+8.2f}{:>8.2f}{:>8.2f}{:>9.3f}{:>8.3f}{:>8.2f}{:>8.1f}{:>9.3f}{:>8.3f}{:>8}\n", fdi,
+             predictor, f.root_length_error_mm, f.apex_distance_mm, f.matched_apex_distance_mm, f.root_chamfer_mm,
+             f.root_f_score, f.root_hausdorff95_mm, f.root_axis_angle_deg, f.chamfer_l2_e3, f.f_score,
+             fmt::format("{}:{}", f.true_apices.size(), f.predicted_apices.size()));
+}
+
+void print_means(const std::string& predictor, const MeanFigures& m, std::size_t cases) {
+  if (m.teeth == 0) {
+    fmt::print("{:<5}{:<10}  none of {} teeth\n", "mean", predictor, cases);
+    return;
+  }
+  fmt::print("{:<5}{:<10}{:>8.2f}{:>8.2f}{:>8.2f}{:>9.3f}{:>8.3f}{:>8.2f}{:>8.1f}{:>9.3f}{:>8.3f}{:>8}\n", "mean",
+             predictor, m.root_length_abs_error_mm, m.apex_distance_mm, m.matched_apex_distance_mm, m.root_chamfer_mm,
+             m.root_f_score, m.root_hausdorff95_mm, m.root_axis_angle_deg, m.chamfer_l2_e3, m.f_score,
+             fmt::format("{}/{}", m.right_root_counts, m.teeth));
+}
+
+void print_table(const Evaluation& evaluation) {
+  print_header();
+  for (const EvaluatedCase& evaluated : evaluation.cases)
+    for (std::size_t p = 0; p < evaluation.predictors.size(); ++p)
+      print_row(evaluated.files.fdi, evaluation.predictors[p], evaluated.outcomes[p]);
+  fmt::print("\n");
+  for (std::size_t p = 0; p < evaluation.predictors.size(); ++p)
+    print_means(evaluation.predictors[p], mean_figures(evaluation, p), evaluation.cases.size());
+  for (std::size_t p = 0; p < evaluation.predictors.size(); ++p) {
+    const MeanFigures means = mean_figures(evaluation, p);
+    if (means.teeth > 0)
+      fmt::print("{}: mean over {} of {} teeth, length error as absolute value (bias {:+.2f} mm)\n",
+                 evaluation.predictors[p], means.teeth, evaluation.cases.size(), means.root_length_bias_mm);
+  }
+  fmt::print(
+      "Lengths in mm, along the crown's growth axis; the root is what lies below the crown's lowest point. H 95 %: "
+      "Hausdorff distance,\n95th percentile. Axis angle in degrees. Chamfer L2 and F at 1 %: whole tooth, in units of "
+      "its bounding box's diagonal.\n");
+  fmt::print("{}\n", describe(CbctNoise{}));
+}
+
+void run(const EvaluateCommand& command) {
+  const std::vector<EvaluationCase> cases = find_evaluation_cases(command.cases);
+  std::vector<NamedPredictor> predictors{rhizodont_predictor(command)};
+  if (!command.templates.empty()) predictors.push_back(template_predictor(command.templates));
+  const EvaluationProgress progress = progress_line(cases.size());
+  std::optional<Evaluation> evaluation;
+  try {
+    evaluation = evaluate_cases(cases, predictors, {}, progress);
+  } catch (...) {
+    clear_line(progress);
+    throw;
+  }
+  clear_line(progress);
+  if (command.json.wants_table()) print_table(*evaluation);
+  command.json.write(*evaluation);
+  if (!command.csv.empty()) write_file_atomically(command.csv, evaluation_csv(*evaluation));
+  if (evaluation->has_failures()) exit_with(static_cast<int>(ErrorCode::no_result));
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& app) {
+  auto command = std::make_shared<EvaluateCommand>();
+  CLI::App* evaluate = app.add_subcommand(
+      "evaluate", "Complete crowns whose whole teeth are known and measure how far the roots are off (exit 0 or 4)");
+  evaluate->add_option("CASES_DIR", command->cases, "Folder with crown_FDI and tooth_FDI meshes in mm")->required();
+  evaluate->add_option("--templates", command->templates,
+                       "Folder with tooth_FDI.ply of the left side: the simple predictor's figures stand beside");
+  evaluate->add_option("--e", command->options.e, "Side of the lattice in mm, 0.2 to 2")->capture_default_str();
+  evaluate->add_option("--threads", command->options.threads, "At most so many threads; 0 = all")
+      ->capture_default_str();
+  evaluate->add_option("--models", command->models, "Folder with completion.safetensors and atlas.safetensors");
+  evaluate->add_option("--csv", command->csv, "Write one line per tooth and predictor to this file");
+  command->json.add_to(*evaluate);
+  evaluate->callback([command] { run(*command); });
+}
+
+}  // namespace rhizodont::command_line
