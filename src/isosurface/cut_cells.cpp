@@ -11,7 +11,6 @@
 #include <cmath>
 #include <optional>
 
-#include "isosurface/index_map.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {
@@ -19,8 +18,9 @@ namespace {
 
 class Flood {
  public:
-  Flood(const ScalarField& field, double iso, const GoldbergTiling& tiling, const IsosurfaceOptions& options)
-      : field_(field), iso_(iso), tiling_(tiling), options_(options) {}
+  Flood(const ScalarField& field, double iso, const GoldbergTiling& tiling, const IsosurfaceOptions& options,
+        const IndexMap& labels)
+      : field_(field), iso_(iso), tiling_(tiling), options_(options), labels_(labels) {}
 
   void add_seed(const Point& seed);
   CutCells result();
@@ -43,6 +43,7 @@ class Flood {
   double iso_;
   const GoldbergTiling& tiling_;
   const IsosurfaceOptions& options_;
+  const IndexMap& labels_;
   IndexMap vertex_map_, cell_map_;
   std::vector<LatticeVertex> vertices_;
   std::vector<char> inside_;                // as many as have been evaluated
@@ -71,7 +72,9 @@ void Flood::evaluate_new_vertices() {
   const std::size_t begin = inside_.size();
   inside_.resize(vertices_.size());
   const auto evaluate = [&](std::size_t i) {
-    inside_[i] = field_(tiling_.position(vertices_[i])).value > iso_ ? 1 : 0;
+    const std::int32_t label = labels_.size() > 0 ? labels_.find(GoldbergTiling::key(vertices_[i])) : -1;
+    const bool inside = label >= 0 ? label == 1 : field_(tiling_.position(vertices_[i])).value > iso_;
+    inside_[i] = inside ? 1 : 0;
   };
   if (vertices_.size() - begin < grain)
     for (std::size_t i = begin; i < vertices_.size(); ++i) evaluate(i);
@@ -180,13 +183,13 @@ CutCells Flood::result() {
 }  // namespace
 
 CutCells find_cut_cells(const ScalarField& field, double iso, std::span<const Point> seeds,
-                        const GoldbergTiling& tiling, const IsosurfaceOptions& options) {
+                        const GoldbergTiling& tiling, const IsosurfaceOptions& options, const IndexMap& labels) {
   if (seeds.empty()) throw InputError("A surface can only be followed from points near it, and there are none.");
   std::vector<std::int64_t> bad;
   for (std::size_t s = 0; s < seeds.size(); ++s)
     if (!seeds[s].allFinite()) bad.push_back(static_cast<std::int64_t>(s));
   if (!bad.empty()) throw InputError("Some points have coordinates that are not numbers.", bad);
-  Flood flood(field, iso, tiling, options);
+  Flood flood(field, iso, tiling, options, labels);
   for (const Point& seed : seeds) flood.add_seed(seed);
   return flood.result();
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "isosurface/goldberg.hpp"
+#include "isosurface/index_map.hpp"
 #include "isosurface/isosurface.hpp"
 
 namespace rhizodont {
@@ -22,7 +23,9 @@ struct CutCells {
 
 /// Finds the cut cells near the seeds, follows the surface from cell to cell, and keeps the component that most
 /// seeds touch. Errors as for `mid_normal`.
+/// `labels`: by `GoldbergTiling::key`, vertices that count as inside (1) or outside (0) whatever the field.
 CutCells find_cut_cells(const ScalarField& field, double iso, std::span<const Point> seeds,
-                        const GoldbergTiling& tiling, const IsosurfaceOptions& options);
+                        const GoldbergTiling& tiling, const IsosurfaceOptions& options,
+                        const IndexMap& labels = IndexMap(1));
 
 }  // namespace rhizodont

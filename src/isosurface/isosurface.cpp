@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "isosurface/ball_labels.hpp"
 #include "isosurface/cut_cells.hpp"
 #include "isosurface/edge_mesh.hpp"
 #include "isosurface/projection.hpp"
@@ -25,7 +26,14 @@ void check_options(const IsosurfaceOptions& options, double iso) {
   require(options.tolerance > 0.0 && std::isfinite(options.tolerance), "The tolerance must be positive.");
   require(options.max_displacement > 0.0 && options.max_displacement <= 1.0,
           "The largest displacement must lie between 0 and 1, in units of e.");
+  require(options.max_change >= 0.0, "The largest section to be closed must not be negative.");
   require(options.max_cells > 0, "The largest number of cells must be positive.");
+}
+
+/// Of a sheet as thick as the tiling one vertex takes up about e^2.
+void check_extent(std::size_t changed_vertices, const IsosurfaceOptions& options) {
+  if (static_cast<double>(changed_vertices) * options.e * options.e > options.max_change)
+    throw NoResultError("The surface has a hole through it that is too wide to be closed: it is not that of a ball.");
 }
 
 struct Extraction {
@@ -38,9 +46,16 @@ Extraction extract(const ScalarField& field, double iso, std::span<const Point> 
                    bool even_valences) {
   check_options(options, iso);
   const GoldbergTiling tiling(options.e, options.origin);
-  const CutCells cells = find_cut_cells(field, iso, seeds, tiling, options);
+  CutCells cells = find_cut_cells(field, iso, seeds, tiling, options);
   Extraction extraction;
   extraction.edge_mesh = triangulate_cells(cells);
+  if (options.as_ball && checked_euler_number(extraction.edge_mesh.edges.size(), extraction.edge_mesh.triangles) != 2) {
+    const LabelChanges changes = changes_to_ball(field, iso, cells, tiling, options.e);
+    check_extent(changes.count, options);
+    cells = find_cut_cells(field, iso, seeds, tiling, options, changes.inside);
+    extraction.edge_mesh = triangulate_cells(cells);
+    extraction.surface.relabelled_vertices = changes.count;
+  }
   extraction.surface.dropped_components = cells.other_components;
   extraction.surface.visited_cells = cells.visited;
   extraction.surface.evaluated_vertices = cells.vertices.size();

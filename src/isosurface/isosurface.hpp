@@ -20,6 +20,8 @@ struct IsosurfaceOptions {
   Point origin = Point::Zero();    ///< mm: a vertex of the lattice
   double tolerance = 1e-7;         ///< mm, > 0: distance of the projected vertices from the surface
   double max_displacement = 0.62;  ///< (0, 1], times e: farthest a vertex may be moved by the projection
+  bool as_ball = false;            ///< cut bridges or fill tunnels as thin as the tiling, until the surface is a sphere
+  double max_change = 8.0;         ///< mm^2, >= 0: section of bridges and tunnels that may be closed for that
   std::size_t max_cells = 20'000'000;  ///< cut tetrahedra before the surface is taken for unbounded
 };
 
@@ -30,6 +32,7 @@ struct Isosurface {
   std::size_t dropped_components = 0;   ///< bubbles and other parts that fewer seeds touch
   std::size_t visited_cells = 0;        ///< cut tetrahedra
   std::size_t evaluated_vertices = 0;   ///< lattice vertices at which the field was evaluated
+  std::size_t relabelled_vertices = 0;  ///< lattice vertices that changed sides to cut bridges or fill tunnels
   std::size_t removed_vertices = 0;     ///< of valence 4, before the projection
   std::size_t restrained_vertices = 0;  ///< kept nearer to their lattice edge than projected, so that no triangle flips
 };
@@ -44,7 +47,7 @@ struct Isosurface {
 /// \param seeds  points (mm) on or near the surface; of several components the one that most seeds touch is kept
 /// \throws UsageError     an option out of its range
 /// \throws InputError     no seeds, non-finite seeds (ids = seeds)
-/// \throws NoResultError  no surface near any seed, or one without end
+/// \throws NoResultError  no surface near any seed, or one without end; with `as_ball`, wide bridges or tunnels
 Isosurface mid_normal(const ScalarField& field, double iso, std::span<const Point> seeds,
                       const IsosurfaceOptions& options = {});
 

@@ -16,13 +16,15 @@ namespace rhizodont {
 namespace {
 
 /// Where the field takes the value between the ends, by regula falsi with the Illinois rule and bisection as its
-/// safeguard.
-Point crossing_of_edge(const ScalarField& field, double iso, const Point& inside, const Point& outside,
-                       double tolerance) {
+/// safeguard. Nothing if the ends are not on their sides, because one was put on the other to cut a bridge or to fill a
+/// tunnel.
+std::optional<Point> crossing_of_edge(const ScalarField& field, double iso, const Point& inside, const Point& outside,
+                                      double tolerance) {
   const double length = (outside - inside).norm();
   double low = 0.0, high = 1.0;
   double at_low = field(inside).value - iso, at_high = field(outside).value - iso;
-  if (!(at_low > 0.0) || !(at_high < 0.0)) return outside;  // exactly the value at the outer end
+  if (at_low > 0.0 && at_high == 0.0) return outside;
+  if (!(at_low > 0.0) || !(at_high < 0.0)) return std::nullopt;
   double t = 0.5;
   for (int step = 0; step < 100 && (high - low) * length > tolerance; ++step) {
     t = step % 4 == 3 ? 0.5 * (low + high) : low + (high - low) * at_low / (at_low - at_high);
@@ -92,8 +94,14 @@ void project_vertices(const ScalarField& field, double iso, const IsosurfaceOpti
                       std::vector<EdgeVertex>& vertices) {
   tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t i) {
     EdgeVertex& vertex = vertices[i];
-    vertex.crossing = crossing_of_edge(field, iso, vertex.inside, vertex.outside, 0.1 * options.tolerance);
     const Point middle = 0.5 * (vertex.inside + vertex.outside);
+    const auto crossing = crossing_of_edge(field, iso, vertex.inside, vertex.outside, 0.1 * options.tolerance);
+    vertex.crossing = crossing.value_or(middle);
+    if (!crossing) {
+      vertex.position = middle;
+      vertex.normal = (vertex.outside - vertex.inside).normalized();
+      return;
+    }
     const auto nearest = nearest_on_surface(field, iso, middle, vertex.crossing, options);
     const bool near = nearest && (*nearest - middle).norm() <= options.max_displacement * options.e;
     vertex.position = near ? *nearest : vertex.crossing;

@@ -13,7 +13,7 @@ namespace rhizodont {
 struct EdgeVertex {
   Point inside = Point::Zero();    ///< end of the edge with field > iso
   Point outside = Point::Zero();   ///< other end
-  Point crossing = Point::Zero();  ///< of the edge and the surface
+  Point crossing = Point::Zero();  ///< of the edge and the surface; the edge's midpoint if there is none
   Point position =
       Point::Zero();  ///< on the surface, the point nearest to the edge's midpoint; the crossing if none is near
   Eigen::Vector3d normal =

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", section 3.4.
+#include "isosurface/guiding_surface.hpp"
+
+#include "rhizodont/error.hpp"
+
+namespace rhizodont {
+
+GuidingSurface guiding_surface(const OrientedPoints& samples, std::span<const double> weights,
+                               std::span<const Point> seeds, const GuidingSurfaceOptions& options) {
+  if (options.smearings < 1) throw UsageError("The normals have to be smeared at least once.");
+  const std::span<const Point> start = seeds.empty() ? std::span<const Point>(samples.points) : seeds;
+  IndicatorOptions indicator = options.indicator;
+  IsosurfaceOptions isosurface = options.isosurface;
+  isosurface.as_ball = true;
+  for (int smearing = 1;; ++smearing, indicator.samples_per_cell *= 2.0) {
+    IndicatorFunction chi = solve_indicator(samples, weights, indicator);
+    const ScalarField field = [&chi](const Point& p) { return chi.evaluate(p); };
+    try {
+      Isosurface surface = grad_normal(field, chi.iso_value(), start, isosurface);
+      return {std::move(chi), std::move(surface), indicator.samples_per_cell};
+    } catch (const NoResultError&) {
+      if (smearing == options.smearings) throw;
+    }
+  }
+}
+
+}  // namespace rhizodont
