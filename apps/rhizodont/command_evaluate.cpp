@@ -57,10 +57,11 @@ void clear_line(const EvaluationProgress& progress) {
 }
 
 void print_header() {
-  fmt::print("{:<5}{:<10}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}\n", "", "", "length", "apex", "matched",
-             "root", "root F", "root", "axis", "Chamfer", "F at", "roots");
-  fmt::print("{:<5}{:<10}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}\n", "FDI", "by", "error", "off", "apices",
-             "Chamfer", "0.5 mm", "H 95 %", "angle", "L2 x1000", "1 %", "true:got");
+  constexpr const char* columns = "{:<5}{:<10}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>10}{:>8}{:>10}\n";
+  fmt::print(columns, "", "", "length", "apex", "matched", "root", "root F", "root", "axis", "Chamfer", "F at",
+             "roots");
+  fmt::print(columns, "FDI", "by", "error", "off", "apices", "Chamfer", "0.5 mm", "H 95 %", "angle", "L2 x1000", "1 %",
+             "true:got");
 }
 
 void print_row(int fdi, const std::string& predictor, const CaseOutcome& outcome) {
@@ -69,21 +70,36 @@ void print_row(int fdi, const std::string& predictor, const CaseOutcome& outcome
     return;
   }
   const RootFigures& f = *outcome.figures;
-  fmt::print("{:<5}{:<10}{:>+8.2f}{:>8.2f}{:>8.2f}{:>9.3f}{:>8.3f}{:>8.2f}{:>8.1f}{:>9.3f}{:>8.3f}{:>8}\n", fdi,
+  fmt::print("{:<5}{:<10}{:>+8.2f}{:>8.2f}{:>8.2f}{:>9.3f}{:>8.3f}{:>8.2f}{:>8.1f}{:>10.3f}{:>8.3f}{:>10}\n", fdi,
              predictor, f.root_length_error_mm, f.apex_distance_mm, f.matched_apex_distance_mm, f.root_chamfer_mm,
              f.root_f_score, f.root_hausdorff95_mm, f.root_axis_angle_deg, f.chamfer_l2_e3, f.f_score,
              fmt::format("{}:{}", f.true_apices.size(), f.predicted_apices.size()));
 }
 
-void print_means(const std::string& predictor, const MeanFigures& m, std::size_t cases) {
+void print_mean(const char* name, const std::string& predictor, const MeanFigures& m) {
   if (m.teeth == 0) {
-    fmt::print("{:<5}{:<10}  none of {} teeth\n", "mean", predictor, cases);
+    fmt::print("{:<5}{:<10}  no tooth\n", name, predictor);
     return;
   }
-  fmt::print("{:<5}{:<10}{:>8.2f}{:>8.2f}{:>8.2f}{:>9.3f}{:>8.3f}{:>8.2f}{:>8.1f}{:>9.3f}{:>8.3f}{:>8}\n", "mean",
+  fmt::print("{:<5}{:<10}{:>8.2f}{:>8.2f}{:>8.2f}{:>9.3f}{:>8.3f}{:>8.2f}{:>8.1f}{:>10.3f}{:>8.3f}{:>10}\n", name,
              predictor, m.root_length_abs_error_mm, m.apex_distance_mm, m.matched_apex_distance_mm, m.root_chamfer_mm,
              m.root_f_score, m.root_hausdorff95_mm, m.root_axis_angle_deg, m.chamfer_l2_e3, m.f_score,
              fmt::format("{}/{}", m.right_root_counts, m.teeth));
+}
+
+void print_means(const Evaluation& evaluation) {
+  const auto& names = evaluation.predictors;
+  for (std::size_t p = 0; p < names.size(); ++p) print_mean("mean", names[p], mean_figures(evaluation, p));
+  if (names.size() > 1 && evaluation.has_failures()) {
+    fmt::print("over the teeth that all completed:\n");
+    for (std::size_t p = 0; p < names.size(); ++p)
+      print_mean("mean", names[p], mean_figures(evaluation, p, MeanOver::completed_by_all));
+  }
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    const MeanFigures means = mean_figures(evaluation, p);
+    fmt::print("{}: {} of {} teeth completed, bias of the root's length {:+.2f} mm\n", names[p], means.teeth,
+               evaluation.cases.size(), means.root_length_bias_mm);
+  }
 }
 
 void print_table(const Evaluation& evaluation) {
@@ -92,18 +108,11 @@ void print_table(const Evaluation& evaluation) {
     for (std::size_t p = 0; p < evaluation.predictors.size(); ++p)
       print_row(evaluated.files.fdi, evaluation.predictors[p], evaluated.outcomes[p]);
   fmt::print("\n");
-  for (std::size_t p = 0; p < evaluation.predictors.size(); ++p)
-    print_means(evaluation.predictors[p], mean_figures(evaluation, p), evaluation.cases.size());
-  for (std::size_t p = 0; p < evaluation.predictors.size(); ++p) {
-    const MeanFigures means = mean_figures(evaluation, p);
-    if (means.teeth > 0)
-      fmt::print("{}: mean over {} of {} teeth, length error as absolute value (bias {:+.2f} mm)\n",
-                 evaluation.predictors[p], means.teeth, evaluation.cases.size(), means.root_length_bias_mm);
-  }
+  print_means(evaluation);
   fmt::print(
-      "Lengths in mm, along the crown's growth axis; the root is what lies below the crown's lowest point. H 95 %: "
-      "Hausdorff distance,\n95th percentile. Axis angle in degrees. Chamfer L2 and F at 1 %: whole tooth, in units of "
-      "its bounding box's diagonal.\n");
+      "Lengths in mm along the crown's growth axis, means of the length error over absolute values. Root: what lies "
+      "below the crown's\nlowest point. H 95 %: Hausdorff distance, 95th percentile. Axis angle in degrees. Chamfer L2 "
+      "and F at 1 %: whole tooth, in units\nof the diagonal of its bounding box.\n");
   fmt::print("{}\n", describe(CbctNoise{}));
 }
 

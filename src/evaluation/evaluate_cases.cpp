@@ -44,6 +44,11 @@ std::map<std::string, std::filesystem::path> numbered_files(const std::filesyste
   return files;
 }
 
+bool completed_by_all(const EvaluatedCase& evaluated) {
+  return std::all_of(evaluated.outcomes.begin(), evaluated.outcomes.end(),
+                     [](const CaseOutcome& outcome) { return outcome.figures.has_value(); });
+}
+
 CaseOutcome evaluate(const NamedPredictor& predictor, int fdi, const TriangleMesh& crown, const TriangleMesh& truth,
                      const RootFigureOptions& options) {
   CaseOutcome outcome;
@@ -80,12 +85,7 @@ std::vector<EvaluationCase> find_evaluation_cases(const std::filesystem::path& f
   return cases;
 }
 
-bool Evaluation::has_failures() const {
-  for (const EvaluatedCase& evaluated : cases)
-    for (const CaseOutcome& outcome : evaluated.outcomes)
-      if (!outcome.figures) return true;
-  return false;
-}
+bool Evaluation::has_failures() const { return !std::all_of(cases.begin(), cases.end(), completed_by_all); }
 
 Evaluation evaluate_cases(const std::vector<EvaluationCase>& cases, const std::vector<NamedPredictor>& predictors,
                           const RootFigureOptions& options, const EvaluationProgress& progress) {
@@ -114,11 +114,11 @@ Evaluation evaluate_cases(const std::vector<EvaluationCase>& cases, const std::v
   return evaluation;
 }
 
-MeanFigures mean_figures(const Evaluation& evaluation, std::size_t predictor) {
+MeanFigures mean_figures(const Evaluation& evaluation, std::size_t predictor, MeanOver over) {
   MeanFigures means;
   for (const EvaluatedCase& evaluated : evaluation.cases) {
     const std::optional<RootFigures>& figures = evaluated.outcomes.at(predictor).figures;
-    if (!figures) continue;
+    if (!figures || (over == MeanOver::completed_by_all && !completed_by_all(evaluated))) continue;
     ++means.teeth;
     means.root_length_abs_error_mm += std::abs(figures->root_length_error_mm);
     means.root_length_bias_mm += figures->root_length_error_mm;

@@ -65,7 +65,7 @@ using EvaluationProgress =
 Evaluation evaluate_cases(const std::vector<EvaluationCase>& cases, const std::vector<NamedPredictor>& predictors,
                           const RootFigureOptions& options = {}, const EvaluationProgress& progress = {});
 
-/// Means over the crowns that a predictor completed; 0 where there are none. Lengths in mm, angles in degrees.
+/// Means over a set of teeth; 0 where there are none. Lengths in mm, angles in degrees.
 struct MeanFigures {
   int teeth = 0;                        ///< over which the means are taken
   double root_length_abs_error_mm = 0;  ///< mean of absolute values
@@ -75,7 +75,11 @@ struct MeanFigures {
   double chamfer_l2_e3 = 0, f_score = 0;
   int right_root_counts = 0;  ///< teeth with as many roots as the true tooth
 };
-MeanFigures mean_figures(const Evaluation& evaluation, std::size_t predictor);
+
+/// Which teeth means are taken over: those that this predictor completed, or those that every predictor did, so that
+/// one that leaves out what is difficult does not seem better.
+enum class MeanOver { completed, completed_by_all };
+MeanFigures mean_figures(const Evaluation& evaluation, std::size_t predictor, MeanOver over = MeanOver::completed);
 
 /// What cone-beam computed tomography itself can tell about a root, beside which every error must be seen.
 struct CbctNoise {

@@ -74,7 +74,7 @@ void to_json(Json& json, const MeanFigures& means) {
 }
 
 void to_json(Json& json, const Evaluation& evaluation) {
-  Json cases = Json::array(), means;
+  Json cases = Json::array(), means, common_means;
   for (const EvaluatedCase& evaluated : evaluation.cases) {
     Json outcomes;
     for (std::size_t p = 0; p < evaluation.predictors.size(); ++p)
@@ -84,11 +84,14 @@ void to_json(Json& json, const Evaluation& evaluation) {
                      {"truth", evaluated.files.truth.filename().string()},
                      {"outcomes", std::move(outcomes)}});
   }
-  for (std::size_t p = 0; p < evaluation.predictors.size(); ++p)
+  for (std::size_t p = 0; p < evaluation.predictors.size(); ++p) {
     means[evaluation.predictors[p]] = mean_figures(evaluation, p);
+    common_means[evaluation.predictors[p]] = mean_figures(evaluation, p, MeanOver::completed_by_all);
+  }
   const CbctNoise noise;
   json = Json{{"cases", std::move(cases)},
               {"means", std::move(means)},
+              {"means_of_common_teeth", std::move(common_means)},
               {"cbct_noise",
                {{"root_length_95_limits_mm", {noise.root_length_low_mm, noise.root_length_high_mm}},
                 {"root_length_source", noise.root_length_source},

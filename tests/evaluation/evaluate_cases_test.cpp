@@ -94,6 +94,9 @@ TEST_F(EvaluateCases, FailuresAreRowsWithAReason) {
 
   EXPECT_EQ(mean_figures(evaluation, 0).teeth, 1);
   EXPECT_EQ(mean_figures(evaluation, 1).teeth, 2);
+  EXPECT_EQ(mean_figures(evaluation, 1, MeanOver::completed_by_all).teeth, 1);
+  EXPECT_EQ(mean_figures(evaluation, 1, MeanOver::completed_by_all).apex_distance_mm,
+            evaluation.cases[0].outcomes[1].figures->apex_distance_mm);
   const std::string csv = evaluation_csv(evaluation);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
   EXPECT_NE(csv.find("36,\"picky\",,,,,,,,,,,,,,\"molars are too hard\""), std::string::npos);
