@@ -28,7 +28,7 @@ std::vector<Eigen::Vector3d> starting_directions() {
 }
 
 struct Candidate {
-  std::optional<Cap> cap;
+  Cap cap;  // without triangles where no region faces this way
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();
   double badness = 0;  // smaller is better
 };
@@ -48,7 +48,7 @@ Candidate along_axis(const TriangleMesh& crown, const Eigen::Vector3d& axis) {
   candidate.axis = axis;
   try {
     candidate.cap = find_cap(crown, axis);
-    candidate.badness = unlikeness(*candidate.cap, axis);
+    candidate.badness = unlikeness(candidate.cap, axis);
   } catch (const InputError&) {
     // No region faces this way: not a candidate.
   }
@@ -56,7 +56,7 @@ Candidate along_axis(const TriangleMesh& crown, const Eigen::Vector3d& axis) {
 }
 
 void sort_by_badness(std::vector<Candidate>& candidates) {
-  std::erase_if(candidates, [](const Candidate& c) { return !c.cap; });
+  std::erase_if(candidates, [](const Candidate& c) { return c.cap.triangles == 0; });
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const Candidate& x, const Candidate& y) { return x.badness < y.badness; });
 }
@@ -80,13 +80,13 @@ std::vector<Candidate> for_unknown_type(const TriangleMesh& crown, const Atlas& 
   std::vector<Candidate> candidates(directions.size());
   tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t i) {
     candidates[i] = along_axis(crown, directions[i]);
-    if (candidates[i].cap) candidates[i] = along_axis(crown, -candidates[i].cap->direction);
+    if (candidates[i].cap.triangles > 0) candidates[i] = along_axis(crown, -candidates[i].cap.direction);
   });
   sort_by_badness(candidates);
   constexpr std::size_t most_compared = 5;  // comparing with all types takes most of the time
   candidates.resize(std::min(candidates.size(), most_compared));
   for (Candidate& candidate : candidates) {
-    std::vector<bool> keep = candidate.cap->is_cap;
+    std::vector<bool> keep = candidate.cap.is_cap;
     keep.flip();
     const TypeGuess guess = guess_fdi_type(keep_crown(crown, keep, "cap").mesh, atlas);
     candidate.badness *= misfit(guess.frame.residual_mm);
@@ -103,8 +103,8 @@ Cap recognise_cap(const TriangleMesh& closed_crown, const Atlas& atlas, std::opt
   if (candidates.empty())
     throw InputError(
         "The mesh is closed, and no cap over a crown's base was recognised: give the crown with its base open.");
-  require_cap(*candidates.front().cap);
-  return std::move(*candidates.front().cap);
+  require_cap(candidates.front().cap);
+  return std::move(candidates.front().cap);
 }
 
 }  // namespace rhizodont

@@ -7,9 +7,10 @@
 
 #include "completion/complete_points.hpp"
 #include "fusion/fuse.hpp"
-#include "isosurface/isosurface.hpp"
+#include "isosurface/guiding_surface.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/diagnosis.hpp"
+#include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/quality.hpp"
 #include "pipeline/closed_crown.hpp"
@@ -17,7 +18,6 @@
 #include "pipeline/guiding_cloud.hpp"
 #include "pipeline/models.hpp"
 #include "pipeline/stage_clock.hpp"
-#include "poisson/indicator.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
 #include "skirt/skirt.hpp"
@@ -27,6 +27,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <span>
 
 namespace rhizodont {
 namespace {
@@ -86,20 +87,12 @@ CrownFrame find_frame(const TriangleMesh& crown, const Atlas& atlas, const Compl
 }
 
 /// The guiding surface M: indicator function of the cloud, meshed by GradNormal.
-TriangleMesh build_guiding_surface(const GuidingCloud& cloud, double e, StageClock& clock) {
-  clock.begin("indicator function");
-  IndicatorOptions indicator;
-  indicator.spacing = std::min(0.4 * e, 0.2);
-  const IndicatorFunction chi = solve_indicator(cloud.samples, cloud.confidence, indicator);
-  clock.begin("isosurface");
-  IsosurfaceOptions isosurface;
-  isosurface.e = e;
-  const auto crown_samples = static_cast<std::size_t>(cloud.crown_samples);
-  const std::span<const Point> seeds(cloud.samples.points.data(), crown_samples);
-  Isosurface surface = grad_normal([&](const Point& p) { return chi.evaluate(p); }, chi.iso_value(), seeds, isosurface);
-  if (surface.euler_number != 2)
-    throw NoResultError("The predicted tooth has a hole through it (its surface is not that of a ball).");
-  return std::move(surface.mesh);
+TriangleMesh build_guiding_surface(const GuidingCloud& cloud, double e) {
+  GuidingSurfaceOptions options;
+  options.indicator.spacing = std::min(0.4 * e, 0.2);
+  options.isosurface.e = e;
+  const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));
+  return guiding_surface(cloud.samples, cloud.confidence, seeds, options).surface.mesh;
 }
 
 void note_guiding_distance(const TriangleMesh& crown, const TriangleMesh& surface, CompletionRecord& record) {
@@ -150,7 +143,7 @@ TriangleMesh in_input_unit(const TriangleMesh& tooth, const TriangleMesh& input,
       continue;
     }
     p /= millimetres_per_unit;
-    if (as_float) p = p.cast<float>().cast<double>();
+    if (as_float) p = nearest_float(p);
   }
   return result;
 }
@@ -187,7 +180,8 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   const OrientedPoints predicted = complete_points(crown.mesh, record.fdi, frame.frame, models.network);
   clock.begin("orientation");
   const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, predicted);
-  const TriangleMesh surface = build_guiding_surface(cloud, options.e, clock);
+  clock.begin("guiding surface");
+  const TriangleMesh surface = build_guiding_surface(cloud, options.e);
   note_guiding_distance(crown.mesh, surface, record);
 
   clock.begin("joining");
