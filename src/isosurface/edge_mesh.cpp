@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <set>
 
+#include "isosurface/incidence.hpp"
 #include "isosurface/index_map.hpp"
 #include "rhizodont/error.hpp"
 
@@ -83,33 +84,13 @@ class CellTriangulation {
   IndexMap vertex_map_;
 };
 
-/// Triangles around each vertex, in compressed rows.
-struct Incidence {
-  std::vector<std::size_t> first;
-  std::vector<std::size_t> triangles;
-
-  Incidence(std::size_t vertices, const std::vector<Triangle>& all)
-      : first(vertices + 1, 0), triangles(3 * all.size()) {
-    for (const Triangle& triangle : all)
-      for (const std::int32_t v : triangle) ++first[static_cast<std::size_t>(v) + 1];
-    for (std::size_t v = 0; v < vertices; ++v) first[v + 1] += first[v];
-    std::vector<std::size_t> next(first.begin(), first.end() - 1);
-    for (std::size_t t = 0; t < all.size(); ++t)
-      for (const std::int32_t v : all[t]) triangles[next[static_cast<std::size_t>(v)]++] = t;
-  }
-  std::size_t valence(std::int32_t v) const {
-    return first[static_cast<std::size_t>(v) + 1] - first[static_cast<std::size_t>(v)];
-  }
-};
-
 /// The neighbours of a vertex, counterclockwise from outside; shorter than its valence if the triangles do not form one
 /// closed fan.
-std::vector<std::int32_t> ring(const Incidence& incidence, const std::vector<Triangle>& triangles,
+std::vector<std::int32_t> ring(const VertexIncidence& incidence, const std::vector<Triangle>& triangles,
                                std::int32_t vertex) {
   std::vector<std::array<std::int32_t, 2>> spans;
-  const auto v = static_cast<std::size_t>(vertex);
-  for (std::size_t i = incidence.first[v]; i < incidence.first[v + 1]; ++i) {
-    const Triangle& triangle = triangles[incidence.triangles[i]];
+  for (const std::size_t t : incidence.of(vertex)) {
+    const Triangle& triangle = triangles[t];
     const auto c = static_cast<std::size_t>(std::ranges::find(triangle, vertex) - triangle.begin());
     spans.push_back({triangle[(c + 1) % 3], triangle[(c + 2) % 3]});
   }
@@ -143,7 +124,7 @@ class Valence4Removal {
       edges_added_.insert(std::minmax(around[0], around[2]));
       for (const std::int32_t n : around) locked_[static_cast<std::size_t>(n)] |= incidence_.valence(n) <= 4 ? 1 : 0;
       removed[v] = 1;
-      for (std::size_t i = incidence_.first[v]; i < incidence_.first[v + 1]; ++i) dropped[incidence_.triangles[i]] = 1;
+      for (const std::size_t t : incidence_.of(vertex)) dropped[t] = 1;
       added.push_back({around[0], around[1], around[2]});
       added.push_back({around[0], around[2], around[3]});
       ++count;
@@ -167,9 +148,8 @@ class Valence4Removal {
 
   bool is_free(std::int32_t a, std::int32_t b) const {
     if (edges_added_.contains(std::minmax(a, b))) return false;
-    const auto v = static_cast<std::size_t>(a);
-    for (std::size_t i = incidence_.first[v]; i < incidence_.first[v + 1]; ++i)
-      if (std::ranges::count(mesh_.triangles[incidence_.triangles[i]], b) > 0) return false;
+    for (const std::size_t t : incidence_.of(a))
+      if (std::ranges::count(mesh_.triangles[t], b) > 0) return false;
     return true;
   }
 
@@ -190,8 +170,8 @@ class Valence4Removal {
   }
 
   EdgeMesh& mesh_;
-  Incidence incidence_;       // of the mesh as it came: valences are those before any removal
-  std::vector<char> locked_;  // next to a removed vertex: its triangles are no longer those in incidence_
+  VertexIncidence incidence_;  // of the mesh as it came: valences are those before any removal
+  std::vector<char> locked_;   // next to a removed vertex: its triangles are no longer those in incidence_
   std::set<std::pair<std::int32_t, std::int32_t>> edges_added_;
 };
 
@@ -206,7 +186,7 @@ EdgeMesh triangulate_cells(const CutCells& cells) {
 std::size_t remove_valence_4(EdgeMesh& mesh) { return Valence4Removal(mesh).run(); }
 
 int checked_euler_number(std::size_t vertices, const std::vector<Triangle>& triangles) {
-  const Incidence incidence(vertices, triangles);
+  const VertexIncidence incidence(vertices, triangles);
   std::vector<std::int64_t> bad;
   std::vector<char> reached(vertices, 0);
   std::vector<std::int32_t> stack{0};
@@ -224,11 +204,11 @@ int checked_euler_number(std::size_t vertices, const std::vector<Triangle>& tria
   reached[0] = 1;
   std::size_t count = 0;
   while (!stack.empty()) {
-    const auto v = static_cast<std::size_t>(stack.back());
+    const std::int32_t v = stack.back();
     stack.pop_back();
     ++count;
-    for (std::size_t i = incidence.first[v]; i < incidence.first[v + 1]; ++i)
-      for (const std::int32_t n : triangles[incidence.triangles[i]])
+    for (const std::size_t t : incidence.of(v))
+      for (const std::int32_t n : triangles[t])
         if (!reached[static_cast<std::size_t>(n)]) {
           reached[static_cast<std::size_t>(n)] = 1;
           stack.push_back(n);

@@ -10,6 +10,7 @@
 #include "isosurface/cut_cells.hpp"
 #include "isosurface/edge_mesh.hpp"
 #include "isosurface/projection.hpp"
+#include "isosurface/relaxation.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
@@ -94,6 +95,9 @@ Isosurface grad_normal(const ScalarField& field, double iso, std::span<const Poi
   project_vertices(field, iso, options, extraction.vertices);
   extraction.surface.restrained_vertices =
       restrain_flipped(extraction.vertices, extraction.surface.mesh.triangles, field);
+  if (options.relax)
+    extraction.surface.relaxed_vertices =
+        relax_poor_triangles(field, iso, options, extraction.vertices, extraction.surface.mesh.triangles);
   for (const EdgeVertex& vertex : extraction.vertices) extraction.surface.mesh.vertices.push_back(vertex.position);
   check_outward(extraction.surface.mesh);
   return std::move(extraction.surface);

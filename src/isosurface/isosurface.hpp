@@ -20,8 +20,10 @@ struct IsosurfaceOptions {
   Point origin = Point::Zero();    ///< mm: a vertex of the lattice
   double tolerance = 1e-7;         ///< mm, > 0: distance of the projected vertices from the surface
   double max_displacement = 0.62;  ///< (0, 1], times e: farthest a vertex may be moved by the projection
-  bool as_ball = false;            ///< cut bridges or fill tunnels as thin as the tiling, until the surface is a sphere
-  double max_change = 8.0;         ///< mm^2, >= 0: section of bridges and tunnels that may be closed for that
+  bool relax =
+      true;  ///< after the projection, slide vertices of triangles beyond the promised angles along the surface
+  bool as_ball = false;     ///< cut bridges or fill tunnels as thin as the tiling, until the surface is a sphere
+  double max_change = 8.0;  ///< mm^2, >= 0: section of bridges and tunnels that may be closed for that
   std::size_t max_cells = 20'000'000;  ///< cut tetrahedra before the surface is taken for unbounded
 };
 
@@ -34,6 +36,7 @@ struct Isosurface {
   std::size_t evaluated_vertices = 0;   ///< lattice vertices at which the field was evaluated
   std::size_t relabelled_vertices = 0;  ///< lattice vertices that changed sides to cut bridges or fill tunnels
   std::size_t removed_vertices = 0;     ///< of valence 4, before the projection
+  std::size_t relaxed_vertices = 0;     ///< slid along the surface after the projection
   std::size_t restrained_vertices = 0;  ///< kept nearer to their lattice edge than projected, so that no triangle flips
 };
 

@@ -45,21 +45,6 @@ std::optional<Point> crossing_of_edge(const ScalarField& field, double iso, cons
   return inside + t * (outside - inside);
 }
 
-/// Newton steps along the gradient to the surface; nothing if they leave it or the field is flat.
-std::optional<Point> settle(const ScalarField& field, double iso, Point p, double largest_step, double tolerance) {
-  for (int step = 0; step < 12; ++step) {
-    const FieldSample sample = field(p);
-    const double squared = sample.gradient.squaredNorm();
-    if (!(squared > 0.0)) return std::nullopt;
-    const Eigen::Vector3d move = (iso - sample.value) / squared * sample.gradient;
-    const double length = move.norm();
-    if (!std::isfinite(length)) return std::nullopt;
-    p += length > largest_step ? Eigen::Vector3d(largest_step / length * move) : move;
-    if (length < 0.1 * tolerance) return p;
-  }
-  return std::nullopt;
-}
-
 /// The point of the surface nearest to `target`, by sliding along tangent planes from a point on the surface.
 std::optional<Point> nearest_on_surface(const ScalarField& field, double iso, const Point& target, const Point& start,
                                         const IsosurfaceOptions& options) {
@@ -82,13 +67,27 @@ std::optional<Point> nearest_on_surface(const ScalarField& field, double iso, co
   return settle(field, iso, p, largest_step, options.tolerance);
 }
 
-Eigen::Vector3d outward(const ScalarField& field, const Point& p) {
+}  // namespace
+
+std::optional<Point> settle(const ScalarField& field, double iso, Point p, double largest_step, double tolerance) {
+  for (int step = 0; step < 12; ++step) {
+    const FieldSample sample = field(p);
+    const double squared = sample.gradient.squaredNorm();
+    if (!(squared > 0.0)) return std::nullopt;
+    const Eigen::Vector3d move = (iso - sample.value) / squared * sample.gradient;
+    const double length = move.norm();
+    if (!std::isfinite(length)) return std::nullopt;
+    p += length > largest_step ? Eigen::Vector3d(largest_step / length * move) : move;
+    if (length < 0.1 * tolerance) return p;
+  }
+  return std::nullopt;
+}
+
+Eigen::Vector3d outward_normal(const ScalarField& field, const Point& p) {
   const Eigen::Vector3d gradient = field(p).gradient;
   const double length = gradient.norm();
   return length > 0.0 && std::isfinite(length) ? Eigen::Vector3d(-gradient / length) : Eigen::Vector3d::Zero();
 }
-
-}  // namespace
 
 void project_vertices(const ScalarField& field, double iso, const IsosurfaceOptions& options,
                       std::vector<EdgeVertex>& vertices) {
@@ -105,7 +104,8 @@ void project_vertices(const ScalarField& field, double iso, const IsosurfaceOpti
     const auto nearest = nearest_on_surface(field, iso, middle, vertex.crossing, options);
     const bool near = nearest && (*nearest - middle).norm() <= options.max_displacement * options.e;
     vertex.position = near ? *nearest : vertex.crossing;
-    vertex.normal = outward(field, vertex.position);
+    vertex.normal = outward_normal(field, vertex.position);
+    vertex.on_surface = true;
   });
 }
 
@@ -126,7 +126,7 @@ std::size_t restrain_flipped(std::vector<EdgeVertex>& vertices, const std::vecto
     for (std::size_t v = 0; v < vertices.size(); ++v) {
       if (!back[v] || vertices[v].position == vertices[v].crossing) continue;
       vertices[v].position = vertices[v].crossing;
-      vertices[v].normal = outward(field, vertices[v].position);
+      vertices[v].normal = outward_normal(field, vertices[v].position);
       ++moved;
       any = true;
     }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "isosurface/isosurface.hpp"
@@ -18,7 +18,14 @@ struct EdgeVertex {
       Point::Zero();  ///< on the surface, the point nearest to the edge's midpoint; the crossing if none is near
   Eigen::Vector3d normal =
       Eigen::Vector3d::Zero();  ///< of the surface at `position`, outward unit; zero where the field has no gradient
+  bool on_surface = false;      ///< whether `position` is; not so where a bridge was cut or a tunnel filled
 };
+
+/// Newton steps along the gradient to the surface; nothing if they leave it or the field is flat. `tolerance` in mm.
+std::optional<Point> settle(const ScalarField& field, double iso, Point p, double largest_step, double tolerance);
+
+/// Against the gradient, unit; zero where the field is flat.
+Eigen::Vector3d outward_normal(const ScalarField& field, const Point& p);
 
 /// Finds crossing, position and normal of each vertex, whose ends are given.
 void project_vertices(const ScalarField& field, double iso, const IsosurfaceOptions& options,
