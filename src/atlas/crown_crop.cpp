@@ -159,9 +159,11 @@ GumLine draw_gum_line(const SyntheticTooth& tooth, double paper_share, double ga
     const double length = tooth.crown_height + tooth.root_length;
     line.junction_share = random.uniform(0.0, 0.3);
     line.offset_mm = tooth.crown_height - length * random.uniform(1.0 / 8, 1.0 / 2);
-  } else if (kind < paper_share + 0.35 * (1 - paper_share)) {  // a trimmed model: nearly flat
+  } else if (kind < paper_share + 0.35 * (1 - paper_share)) {
+    // A trimmed model: nearly flat, and across the arch's axis, against which teeth lean.
     line.junction_share = random.uniform(0.0, 0.35);
     line.offset_mm = random.uniform(-0.8, 2.2);
+    tilt = 9 * degree;
   } else {  // the gum's own line: flatter than the junction, with papillae between the teeth
     line.junction_share = random.uniform(0.4, 1.15);
     line.offset_mm = random.chance(0.75) ? random.uniform(-0.6, 1.6) : random.uniform(-1.0, 3.0);
@@ -185,7 +187,9 @@ std::optional<TriangleMesh> crop_crown(const SyntheticTooth& tooth, const GumLin
     if (std::abs(value) < 1e-3) value = value < 0 ? -1e-3 : 1e-3;  // no slivers through vertices
     level.push_back(value);
   }
-  TriangleMesh crown = highest_piece(Clipper(tooth.mesh, level).take());
+  const TriangleMesh above = Clipper(tooth.mesh, level).take();
+  if (above.triangles.empty()) return std::nullopt;
+  TriangleMesh crown = highest_piece(above);
   if (crown.triangles.size() < 50 || !is_disc(crown)) return std::nullopt;
   return crown;
 }

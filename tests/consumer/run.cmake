@@ -9,7 +9,7 @@ foreach(command
     "${CMAKE_COMMAND};--install;${BUILD};--prefix;${prefix}"
     "${CMAKE_COMMAND};-S;${SOURCE}/tests/consumer;-B;${BUILD}/consumer/build;-G;Ninja;-DCMAKE_PREFIX_PATH=${prefix}"
     "${CMAKE_COMMAND};--build;${BUILD}/consumer/build"
-    "${BUILD}/consumer/build/consumer;${SOURCE}/samples/crown_36.ply")
+    "${BUILD}/consumer/build/consumer;${SOURCE}/samples/crown_36.stl")
   execute_process(COMMAND ${command} RESULT_VARIABLE result OUTPUT_VARIABLE text ERROR_VARIABLE text)
   if(NOT result EQUAL 0)
     message(FATAL_ERROR "${command} ended with ${result}:\n${text}")
