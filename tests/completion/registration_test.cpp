@@ -1,0 +1,151 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Runs on what the project ships: the crowns in samples/ and models/atlas.safetensors.
+#include "completion/frame.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/sampling.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+namespace rhizodont {
+namespace {
+
+const std::filesystem::path root = RHIZODONT_SOURCE_DIR;
+
+const Atlas& atlas() {
+  static const Atlas loaded = load_atlas(root / "models" / "atlas.safetensors");
+  return loaded;
+}
+
+struct Sample {
+  int fdi;
+  const char* file;
+};
+constexpr Sample samples[] = {
+    {11, "crown_11.stl"}, {23, "crown_23.ply"}, {34, "crown_34.ply"}, {36, "crown_36.stl"}, {16, "crown_16.ply"}};
+
+TriangleMesh sample_crown(const Sample& sample) { return load_mesh(root / "samples" / sample.file).mesh; }
+
+const MeanCrown& mean_of(int fdi) { return atlas().types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))]; }
+
+TriangleMesh turned(TriangleMesh mesh, const Eigen::Matrix3d& turn, const Point& shift) {
+  for (Point& p : mesh.vertices) p = turn * p + shift;
+  return mesh;
+}
+
+TriangleMesh mirrored(TriangleMesh mesh) {
+  for (Point& p : mesh.vertices) p.x() = -p.x();
+  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
+
+// Angle about z between two poses of the same crown.
+double angle_between(const CanonicalFrame& a, const TriangleMesh& mesh_a, const CanonicalFrame& b,
+                     const TriangleMesh& mesh_b) {
+  double sine = 0, cosine = 0;
+  for (std::size_t v = 0; v < mesh_a.vertices.size(); ++v) {
+    const Point p = a.to_canonical(mesh_a.vertices[v]), q = b.to_canonical(mesh_b.vertices[v]);
+    sine += p.x() * q.y() - p.y() * q.x(), cosine += p.x() * q.x() + p.y() * q.y();
+  }
+  return std::atan2(sine, cosine);
+}
+
+TEST(CanonicalFrameOfCrowns, axisAndCentreAreTheCrownsOwn) {
+  for (const Sample& sample : samples) {
+    const TriangleMesh crown = sample_crown(sample);
+    const CrownFrame found = canonical_frame(crown, sample.fdi, mean_of(sample.fdi));
+    EXPECT_LT((found.frame.direction_to_canonical(growth_axis(crown)) - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
+    EXPECT_LT((found.frame.centre - area_centroid(crown)).norm(), 1e-12);
+    EXPECT_EQ(found.frame.mirrored, is_right_side(sample.fdi));
+    EXPECT_NEAR(found.frame.rotation.determinant(), 1, 1e-12);
+    EXPECT_LT(found.residual_mm, 1.2) << sample.fdi;
+  }
+}
+
+TEST(CanonicalFrameOfCrowns, poseInTheScanDoesNotMatter) {
+  for (const Sample& sample : samples) {
+    const TriangleMesh crown = sample_crown(sample);
+    const CanonicalFrame first = canonical_frame(crown, sample.fdi, mean_of(sample.fdi)).frame;
+    for (int k = 1; k <= 4; ++k) {
+      const Eigen::Matrix3d turn =
+          Eigen::AngleAxisd(1.5 * k, Eigen::Vector3d(std::sin(k), std::cos(2 * k), 0.3).normalized())
+              .toRotationMatrix();
+      const TriangleMesh moved = turned(crown, turn, Point(40 * k, -20, 11));
+      const CanonicalFrame second = canonical_frame(moved, sample.fdi, mean_of(sample.fdi)).frame;
+      EXPECT_LT(std::abs(angle_between(first, crown, second, moved)), 0.06) << sample.fdi << " turn " << k;
+    }
+  }
+}
+
+TEST(CanonicalFrameOfCrowns, mirrorImageIsTheOtherSidesTooth) {
+  for (const Sample& sample : samples) {
+    const TriangleMesh crown = sample_crown(sample), image = mirrored(crown);
+    const int other = fdi_of_type(tooth_type_of_fdi(sample.fdi), !is_right_side(sample.fdi));
+    const CanonicalFrame first = canonical_frame(crown, sample.fdi, mean_of(sample.fdi)).frame;
+    const CanonicalFrame second = canonical_frame(image, other, mean_of(other)).frame;
+    EXPECT_LT(std::abs(angle_between(first, crown, second, image)), 0.06) << sample.fdi;
+  }
+}
+
+TEST(CanonicalFrameOfCrowns, isTheSameForAnyNumberOfThreads) {
+  const TriangleMesh crown = sample_crown(samples[3]);
+  const TypeGuess many = guess_fdi_type(crown, atlas());
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const TypeGuess single = guess_fdi_type(crown, atlas());
+  EXPECT_EQ(many.fdi, single.fdi);
+  EXPECT_EQ(many.residuals_mm, single.residuals_mm);
+  EXPECT_EQ(many.frame.frame.rotation, single.frame.frame.rotation);
+}
+
+TEST(GuessedType, findsJawAndClassOfTheSamples) {
+  for (const Sample& sample : samples) {
+    const TypeGuess guess = guess_fdi_type(sample_crown(sample), atlas());
+    // Neighbours of one class are alike; a molar is not taken for an incisor, nor an upper tooth for a lower one.
+    const auto group = [](int fdi) { return fdi % 10 <= 2 ? 0 : fdi % 10 == 3 ? 1 : fdi % 10 <= 5 ? 2 : 3; };
+    EXPECT_EQ(group(guess.fdi), group(sample.fdi)) << sample.fdi << " taken for " << guess.fdi;
+    EXPECT_EQ(guess.fdi / 30, sample.fdi / 30) << sample.fdi << " taken for " << guess.fdi;
+    EXPECT_EQ(guess.frame.frame.mirrored, is_right_side(guess.fdi));
+  }
+}
+
+TEST(MeanCrownFit, findsAxisAndSizeOfAKnownPose) {
+  const MeanCrown& mean = mean_of(36);
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.4, Eigen::Vector3d(0.2, 1, -0.4).normalized()).toRotationMatrix();
+  const double size = 1.08;
+  OrientedPoints points;
+  for (const Point& p : mean.crown.points) points.points.push_back(turn * (12 * size * p) + Point(10, 20, 30));
+  for (const Eigen::Vector3d& n : mean.crown.normals) points.normals.push_back(turn * n);
+  const RigidFit fit = fit_mean_crown(points, mean, false, true);
+  EXPECT_LT((fit.frame.direction_to_world(Eigen::Vector3d::UnitZ()) - turn.col(2)).norm(), 0.02);
+  EXPECT_LT((fit.frame.direction_to_world(Eigen::Vector3d::UnitX()) - turn.col(0)).norm(), 0.02);
+  EXPECT_NEAR(fit.scale_ratio, size, 0.02);
+  EXPECT_LT((fit.frame.centre - Point(10, 20, 30)).norm(), 0.2);
+  EXPECT_LT(fit.residual_mm, 0.1);
+}
+
+TEST(Registration, refusesWhatItCannotUse) {
+  const TriangleMesh crown = sample_crown(samples[0]);
+  EXPECT_THROW(canonical_frame(crown, 19, mean_of(11)), UsageError);
+  EXPECT_THROW(canonical_frame(TriangleMesh{}, 11, mean_of(11)), InputError);
+  EXPECT_THROW(canonical_frame(crown, 11, MeanCrown{}), UsageError);
+  EXPECT_THROW(guess_fdi_type(crown, Atlas{}), UsageError);
+  RegistrationOptions options;
+  options.trim = 0.1;
+  EXPECT_THROW(canonical_frame(crown, 11, mean_of(11), options), UsageError);
+  EXPECT_THROW(fit_mean_crown({}, mean_of(11), false, true), InputError);
+  const SurfaceSamples surface = sample_surface(crown, 100, 3);
+  EXPECT_THROW(fit_mean_crown({surface.points, surface.normals}, mean_of(11), false, false, Eigen::Vector3d(0, 0, 2)),
+               UsageError);
+}
+
+}  // namespace
+}  // namespace rhizodont
