@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <string>
@@ -82,7 +83,14 @@ void run(const CompleteCommand& command) {
   clear_line(progress);
   const std::string report = completion_report(tooth, options, command.crown, sha256_of_file(command.crown));
   save_mesh(command.output, as_file(tooth));
-  if (!command.report.empty()) write_file_atomically(command.report, report);
+  if (!command.report.empty()) {
+    try {
+      write_file_atomically(command.report, report);
+    } catch (...) {
+      std::filesystem::remove(command.output);  // all or nothing
+      throw;
+    }
+  }
   if (!command.quiet) print_summary(tooth, command.output);
 }
 

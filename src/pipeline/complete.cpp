@@ -89,7 +89,6 @@ CrownFrame find_frame(const TriangleMesh& crown, const Atlas& atlas, const Compl
 /// The guiding surface M: indicator function of the cloud, meshed by GradNormal.
 TriangleMesh build_guiding_surface(const GuidingCloud& cloud, double e) {
   GuidingSurfaceOptions options;
-  options.indicator.spacing = std::min(0.4 * e, 0.2);
   options.isosurface.e = e;
   const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));
   return guiding_surface(cloud.samples, cloud.confidence, seeds, options).surface.mesh;

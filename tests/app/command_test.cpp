@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The program as a user meets it: exit codes, what is said where, and what is written.
-#include "io/io_test_tools.hpp"
+#include "app/program.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/float_bits.hpp"
 #include "mesh/test_meshes.hpp"
 
-#include <sys/wait.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -15,31 +14,10 @@ namespace rhizodont {
 namespace {
 
 namespace fs = std::filesystem;
+using test::Outcome;
 
-struct Outcome {
-  int code = -1;
-  std::string out, error;
-};
-
-class Program : public ::testing::Test {
+class PairOfFiles : public test::Program {
  protected:
-  Outcome run(const std::string& arguments) const {
-    const fs::path out = logs_.path() / "out", error = logs_.path() / "error";
-    const std::string command = "cd '" + folder.path().string() + "' && '" RHIZODONT_PROGRAM "' " + arguments + " > '" +
-                                out.string() + "' 2> '" + error.string() + "' < /dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, test::read_all(out), test::read_all(error)};
-  }
-
-  // ends with this code and says one line that holds `words`
-  void expect_error(const std::string& arguments, int code, const std::string& words) const {
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.code, code) << arguments << "\n" << outcome.error;
-    EXPECT_NE(outcome.error.find(words), std::string::npos) << outcome.error << "\nshould hold: " << words;
-    EXPECT_EQ(outcome.error.rfind("rhizodont: ", 0), 0U) << outcome.error;
-    EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
-  }
-
   void write_pair() const {
     TriangleMesh tooth = test::sphere(2, 4);
     for (Point& p : tooth.vertices) p = nearest_float(p);
@@ -56,14 +34,9 @@ class Program : public ::testing::Test {
     whole.mesh.triangles.pop_back();
     save_mesh(folder.path() / "open.ply", whole);
   }
-
-  test::TemporaryFolder folder;
-
- private:
-  test::TemporaryFolder logs_;
 };
 
-TEST_F(Program, HelpAndVersion) {
+TEST_F(PairOfFiles, HelpAndVersion) {
   const Outcome help = run("--help");
   EXPECT_EQ(help.code, 0);
   for (const char* command : {"check", "measure", "render"}) EXPECT_NE(help.out.find(command), std::string::npos);
@@ -75,7 +48,7 @@ TEST_F(Program, HelpAndVersion) {
   EXPECT_EQ(version.out.rfind("rhizodont ", 0), 0U);
 }
 
-TEST_F(Program, WrongUsageIs2) {
+TEST_F(PairOfFiles, WrongUsageIs2) {
   write_pair();
   expect_error("", 2, "subcommand");
   expect_error("frobnicate", 2, "");
@@ -88,7 +61,7 @@ TEST_F(Program, WrongUsageIs2) {
   EXPECT_EQ(folder.file_count(), 3U);
 }
 
-TEST_F(Program, UnusableInputIs3) {
+TEST_F(PairOfFiles, UnusableInputIs3) {
   write_pair();
   expect_error("measure none.ply", 3, "none.ply");
   folder.write("empty.stl", "");
@@ -104,7 +77,7 @@ TEST_F(Program, UnusableInputIs3) {
   EXPECT_FALSE(fs::exists(folder.path() / "a.png"));
 }
 
-TEST_F(Program, CheckSaysWhetherThePromisesHold) {
+TEST_F(PairOfFiles, CheckSaysWhetherThePromisesHold) {
   write_pair();
   const Outcome good = run("check crown.stl tooth.ply");
   EXPECT_EQ(good.code, 0);
@@ -116,7 +89,7 @@ TEST_F(Program, CheckSaysWhetherThePromisesHold) {
   EXPECT_NE(bad.out.find("the tooth is open: 3 border edges"), std::string::npos) << bad.out;
 }
 
-TEST_F(Program, JsonToStandardOutputOrAFile) {
+TEST_F(PairOfFiles, JsonToStandardOutputOrAFile) {
   write_pair();
   const Outcome printed = run("check crown.stl open.ply --json");
   EXPECT_EQ(printed.code, 4);
@@ -132,7 +105,7 @@ TEST_F(Program, JsonToStandardOutputOrAFile) {
   EXPECT_EQ(figures["topology"]["triangles"], 128);
 }
 
-TEST_F(Program, RenderWritesAPicture) {
+TEST_F(PairOfFiles, RenderWritesAPicture) {
   write_pair();
   const Outcome outcome =
       run("render crown.stl tooth.ply -o sheet.png --width 40 --height 50 --views front,top,oblique --wireframe");

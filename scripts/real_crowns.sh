@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: Rhizodont contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+# Completes every real crown of a data folder, proves the promises on each result and counts the outcomes.
+# usage: real_crowns.sh [DATA=../shared/data] [OUT=results/real]
+# Needs a built program (scripts/demo.sh or scripts/test.sh). Ends with 1 if a command ends otherwise than with 0, 3 or 4, or
+# if `check` does not hold on a result.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+data=${1:-../shared/data}
+out=${2:-results/real}
+program=build/apps/rhizodont/rhizodont
+mkdir -p "$out"
+bad=0
+for group in validation crowns/patient0 crowns/patient1 lower_scan; do
+  done_here=0 all=0 kept=0 triangles=0
+  for crown in "$data/$group"/crown_*.ply; do
+    name=$(basename "${crown%.ply}")
+    fdi=${name#crown_}
+    tooth="$out/${group//\//_}_$fdi.ply"
+    all=$((all + 1))
+    rm -f "$tooth"
+    "$program" complete "$crown" --fdi "$fdi" -o "$tooth" --report "${tooth%.ply}.json" --quiet 2> "${tooth%.ply}.txt"
+    code=$?
+    if [ $code -eq 0 ]; then
+      read -r k n <<< "$("$program" check "$crown" "$tooth" --json | /usr/bin/python3 -c '
+import json, sys
+crown = json.load(sys.stdin)["crown"]
+print(crown["kept_triangles"], crown["triangles"])')"
+      if "$program" check "$crown" "$tooth" > /dev/null; then
+        done_here=$((done_here + 1)) kept=$((kept + k)) triangles=$((triangles + n))
+      else
+        echo "$crown: exit 0, but check does not hold"
+        bad=1
+      fi
+    else
+      echo "$crown: exit $code: $(head -c 300 "${tooth%.ply}.txt")"
+      [ $code -eq 3 ] || [ $code -eq 4 ] || bad=1
+      [ -e "$tooth" ] && echo "$tooth was written all the same" && bad=1
+    fi
+  done
+  echo "$group: $done_here of $all completed, $kept of $triangles triangles kept"
+done
+exit $bad

@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `rhizodont complete` as a user meets it: files in, files out, exit codes for input that cannot be used.
+#include "app/program.hpp"
+#include "mesh/adjacency.hpp"
+#include "mesh/test_meshes.hpp"
+#include "rhizodont/io.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+namespace rhizodont {
+namespace {
+
+namespace fs = std::filesystem;
+using test::Outcome;
+
+class Complete : public test::Program {
+ protected:
+  static fs::path sample(const std::string& name) { return fs::path(RHIZODONT_SOURCE_DIR) / "samples" / name; }
+
+  fs::path file(const std::string& name) const { return folder.path() / name; }
+
+  void write(const std::string& name, const TriangleMesh& mesh) const {
+    MeshFile contents;
+    contents.mesh = mesh;
+    save_mesh(file(name), contents);
+  }
+
+  void write_bytes(const std::string& name, const std::string& bytes) const {
+    std::ofstream(file(name), std::ios::binary) << bytes;
+  }
+
+  /// Ends with exit 3, says `words` in one line, and writes nothing.
+  void expect_refused(const std::string& name, const std::string& words) const {
+    expect_error("complete " + name + " --fdi 36 -o tooth.ply --report tooth.json", 3, words);
+    EXPECT_FALSE(fs::exists(file("tooth.ply"))) << name;
+    EXPECT_FALSE(fs::exists(file("tooth.json"))) << name;
+  }
+};
+
+TEST_F(Complete, WritesToothAndReportAndCheckHolds) {
+  const std::string crown = "'" + sample("crown_36.stl").string() + "'";
+  const Outcome outcome = run("complete " + crown + " --fdi 36 -o tooth.ply --report report.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.error;
+  EXPECT_TRUE(outcome.error.empty()) << "quiet in a pipe: " << outcome.error;
+  EXPECT_EQ(run("check " + crown + " tooth.ply").code, 0);
+  const auto report = nlohmann::json::parse(std::ifstream(file("report.json")));
+  EXPECT_EQ(report["fdi"]["number"], 36);
+  EXPECT_EQ(report["crown"]["kept_triangles"], report["crown"]["triangles"]);
+  const MeshFile tooth = load_mesh(file("tooth.ply"));
+  ASSERT_TRUE(tooth.vertex_attributes.contains("source"));
+  const auto& source = tooth.vertex_attributes.at("source").values;
+  for (const double value : {0.0, 1.0, 2.0}) EXPECT_GT(std::count(source.begin(), source.end(), value), 20) << value;
+}
+
+TEST_F(Complete, OtherFormatsKeepTheCrownToo) {
+  const std::string crown = "'" + sample("crown_34.ply").string() + "'";
+  for (const std::string name : {"tooth.stl", "tooth.obj"}) {
+    ASSERT_EQ(run("complete " + crown + " --fdi 34 --quiet -o " + name).code, 0) << name;
+    EXPECT_EQ(run("check " + crown + " " + name).code, 0) << name;
+  }
+  ASSERT_EQ(run("complete " + crown + " --fdi 34 --quiet -o tooth.glb").code, 0);
+  EXPECT_GT(fs::file_size(file("tooth.glb")), 10000U);
+}
+
+TEST_F(Complete, UnusableFilesAreRefused) {
+  expect_refused("missing.ply", "missing.ply");
+  write_bytes("empty.stl", "");
+  expect_refused("empty.stl", "empty");
+  write_bytes("none.ply",
+              "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\nproperty float z\n"
+              "element face 0\nproperty list uchar int vertex_indices\nend_header\n");
+  expect_refused("none.ply", "no triangle");
+  const std::string whole = test::read_all(sample("crown_36.stl"));
+  write_bytes("cut.stl", whole.substr(0, whole.size() / 2));
+  expect_refused("cut.stl", "cut.stl");
+  write_bytes("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_refused("nan.obj", "nan.obj");
+}
+
+TEST_F(Complete, MeshesThatAreNoCrownAreRefused) {
+  const TriangleMesh crown = load_mesh(sample("crown_34.ply")).mesh;
+  write("ball.ply", test::sphere(4, 4));
+  expect_refused("ball.ply", "no cap");
+  write("pieces.ply", test::together(crown, crown, Point(20, 0, 0)));
+  expect_refused("pieces.ply", "2 separate pieces");
+  write("inside_out.ply", flipped(crown));
+  expect_refused("inside_out.ply", "face inwards");
+  TriangleMesh damaged = crown;
+  std::swap(damaged.triangles[50][0], damaged.triangles[50][1]);
+  write("flipped.ply", damaged);
+  expect_refused("flipped.ply", "flipped against their neighbours");
+  damaged = crown;
+  damaged.vertices.push_back(damaged.vertices[0] + Point(1, 1, 1));
+  const Triangle& t = damaged.triangles[100];
+  damaged.triangles.push_back({t[0], t[1], static_cast<std::int32_t>(damaged.vertices.size()) - 1});
+  write("fin.ply", damaged);
+  expect_refused("fin.ply", "more than two triangles");
+  TriangleMesh metres = crown;
+  for (Point& p : metres.vertices) p *= 1e-3;
+  write("metres.obj", metres);
+  expect_refused("metres.obj", "metres (--unit m)");
+}
+
+TEST_F(Complete, WrongUsage) {
+  const std::string crown = "'" + sample("crown_34.ply").string() + "'";
+  expect_error("complete " + crown, 2, "--output");
+  expect_error("complete " + crown + " --fdi 39 -o tooth.ply", 2, "39");
+  expect_error("complete " + crown + " --fdi 34 --e 9 -o tooth.ply", 2, "out of its range");
+  expect_error("complete " + crown + " --fdi 34 --cap cut -o tooth.ply", 2, "cut");
+  expect_error("complete " + crown + " --fdi 34 -o tooth.doc", 2, "doc");
+  EXPECT_FALSE(fs::exists(file("tooth.ply")));
+}
+
+}  // namespace
+}  // namespace rhizodont

@@ -1,0 +1,167 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "rhizodont/complete.hpp"
+
+#include "mesh/geometry.hpp"
+#include "mesh/test_meshes.hpp"
+#include "rhizodont/check.hpp"
+#include "rhizodont/error.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+namespace rhizodont {
+namespace {
+
+const std::filesystem::path source_folder = RHIZODONT_SOURCE_DIR;
+const std::filesystem::path shared_data = source_folder / "../shared/data";
+
+const CompletionModels& models() {
+  static const CompletionModels loaded = CompletionModels::load(source_folder / "models");
+  return loaded;
+}
+
+TriangleMesh sample(const std::string& name) { return load_mesh(source_folder / "samples" / name).mesh; }
+
+CompleteOptions for_tooth(int fdi) {
+  CompleteOptions options;
+  options.fdi = fdi;
+  return options;
+}
+
+/// Vertex i of the tooth is vertex kept_vertices[i] of the crown, bit for bit, and so are the first triangles.
+void expect_crown_first(const TriangleMesh& crown, const CompletedTooth& tooth) {
+  const CompletionRecord& record = tooth.record;
+  std::vector<int> number(crown.vertices.size(), -1);
+  for (std::size_t i = 0; i < record.kept_vertices.size(); ++i) {
+    const Point& original = crown.vertices[static_cast<std::size_t>(record.kept_vertices[i])];
+    ASSERT_EQ(std::memcmp(original.data(), tooth.mesh.vertices[i].data(), sizeof(double) * 3), 0) << i;
+    ASSERT_EQ(tooth.source[i], VertexSource::scan);
+    number[static_cast<std::size_t>(record.kept_vertices[i])] = static_cast<int>(i);
+  }
+  std::size_t next = 0;
+  for (const Triangle& t : crown.triangles) {
+    const Triangle mapped{number[static_cast<std::size_t>(t[0])], number[static_cast<std::size_t>(t[1])],
+                          number[static_cast<std::size_t>(t[2])]};
+    if (mapped[0] < 0 || mapped[1] < 0 || mapped[2] < 0) continue;
+    ASSERT_EQ(tooth.mesh.triangles[next], mapped) << next;
+    ++next;
+  }
+  EXPECT_EQ(static_cast<int>(next), record.kept_triangles);
+}
+
+class SampleCrowns : public testing::TestWithParam<std::pair<const char*, int>> {};
+
+TEST_P(SampleCrowns, BecomeWholeTeeth) {
+  const auto [file, fdi] = GetParam();
+  const TriangleMesh crown = sample(file);
+  const CompletedTooth tooth = complete_tooth(crown, models(), for_tooth(fdi));
+  expect_crown_first(crown, tooth);
+  CheckOptions exact;
+  exact.compare_as_float = false;
+  const CheckReport report = check(crown, tooth.mesh, exact);
+  EXPECT_TRUE(report.holds());
+  EXPECT_EQ(report.crown.kept_triangles, static_cast<std::int64_t>(crown.triangles.size()));
+  EXPECT_TRUE(coordinates_fit_float(tooth.mesh));
+  EXPECT_GT(tooth.record.root_length_mm, 7);
+  EXPECT_LT(tooth.record.root_length_mm, 22);
+  EXPECT_GT(tooth.record.growth_axis.dot(area_vector(crown).normalized()), 0.999);
+  EXPECT_EQ(std::count(tooth.source.begin(), tooth.source.end(), VertexSource::transition),
+            tooth.record.transition_vertices);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SampleCrowns,
+                         testing::Values(std::pair("crown_11.stl", 11), std::pair("crown_34.ply", 34),
+                                         std::pair("crown_36.stl", 36), std::pair("crown_16.ply", 16)));
+
+TEST(CompleteTooth, SameBytesForAnyNumberOfThreads) {
+  const TriangleMesh crown = sample("crown_23.ply");
+  CompleteOptions options = for_tooth(23);
+  options.threads = 1;
+  const CompletedTooth one = complete_tooth(crown, models(), options);
+  options.threads = 2;
+  const CompletedTooth two = complete_tooth(crown, models(), options);
+  EXPECT_EQ(one.mesh.triangles, two.mesh.triangles);
+  ASSERT_EQ(one.mesh.vertices.size(), two.mesh.vertices.size());
+  for (std::size_t v = 0; v < one.mesh.vertices.size(); ++v) ASSERT_EQ(one.mesh.vertices[v], two.mesh.vertices[v]);
+}
+
+TEST(CompleteTooth, TheUnitOfTheInputIsThatOfTheOutput) {
+  TriangleMesh crown = sample("crown_34.ply");
+  for (Point& p : crown.vertices) p *= 1e-3;
+  EXPECT_THROW(complete_tooth(crown, models(), for_tooth(34)), InputError);
+  CompleteOptions options = for_tooth(34);
+  options.millimetres_per_unit = 1000;
+  const CompletedTooth tooth = complete_tooth(crown, models(), options);
+  expect_crown_first(crown, tooth);
+  EXPECT_LT(bounding_box(tooth.mesh.vertices).sizes().maxCoeff(), 0.03);
+  EXPECT_GT(tooth.record.root_length_mm, 7) << "the report is in millimetres";
+}
+
+TEST(CompleteTooth, WithoutANumberTheTypeIsGuessedAndSaid) {
+  const CompletedTooth tooth = complete_tooth(sample("crown_36.stl"), models());
+  EXPECT_TRUE(tooth.record.fdi_guessed);
+  EXPECT_GE(tooth.record.fdi % 10, 6) << "a molar";
+  ASSERT_FALSE(tooth.record.warnings.empty());
+  EXPECT_NE(tooth.record.warnings.front().find(std::to_string(tooth.record.fdi)), std::string::npos);
+}
+
+TEST(CompleteTooth, ClosedMeshesWithoutACapAreRefused) {
+  EXPECT_THROW(complete_tooth(test::sphere(4, 4), models(), for_tooth(36)), InputError);
+  CompleteOptions keep = for_tooth(36);
+  keep.cap = CapHandling::keep;
+  EXPECT_THROW(complete_tooth(test::sphere(4, 4), models(), keep), InputError);
+  const CompletedTooth tooth = complete_tooth(sample("crown_34.ply"), models(), for_tooth(34));
+  EXPECT_THROW(complete_tooth(tooth.mesh, models(), for_tooth(34)), InputError) << "a whole tooth";
+}
+
+TEST(CompleteTooth, OptionsOutOfRange) {
+  const TriangleMesh crown = sample("crown_34.ply");
+  CompleteOptions options = for_tooth(34);
+  options.e = 0.01;
+  EXPECT_THROW(complete_tooth(crown, models(), options), UsageError);
+  EXPECT_THROW(complete_tooth(crown, models(), for_tooth(39)), UsageError);
+  EXPECT_THROW(complete_tooth(crown, models(), for_tooth(51)), UsageError);
+  options = for_tooth(34);
+  options.threads = -1;
+  EXPECT_THROW(complete_tooth(crown, models(), options), UsageError);
+}
+
+TEST(CompleteTooth, AReportHasWhatTheSchemaAsksFor) {
+  const CompletedTooth tooth = complete_tooth(sample("crown_34.ply"), models(), for_tooth(34));
+  const auto file = source_folder / "samples/crown_34.ply";
+  const auto report = nlohmann::json::parse(completion_report(tooth, for_tooth(34), file, sha256_of_file(file)));
+  const auto schema = nlohmann::json::parse(std::ifstream(source_folder / "docs/report.schema.json"));
+  for (const auto& key : schema["required"]) {
+    ASSERT_TRUE(report.contains(key)) << key;
+    const auto& part = schema["properties"][key.get<std::string>()];
+    if (!part.contains("required")) continue;
+    for (const auto& inner : part["required"])
+      EXPECT_TRUE(report[key.get<std::string>()].contains(inner.get<std::string>())) << key << " " << inner;
+  }
+  EXPECT_EQ(report.size(), schema["required"].size());
+  EXPECT_EQ(report["input"]["file"], "crown_34.ply");
+  EXPECT_EQ(report["input"]["sha256"].get<std::string>().size(), 64U);
+  EXPECT_EQ(report["crown"]["kept_vertices"].size(), tooth.record.kept_vertices.size());
+  EXPECT_GT(report["stages"].size(), 4U);
+}
+
+TEST(CompleteTooth, ARealCappedCrownIsOpenedAndCompleted) {
+  const auto file = shared_data / "crowns/patient0/crown_16.ply";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real crowns at " << file;
+  const TriangleMesh crown = load_mesh(file).mesh;
+  const CompletedTooth tooth = complete_tooth(crown, models(), for_tooth(16));
+  EXPECT_TRUE(tooth.record.cap_dropped);
+  expect_crown_first(crown, tooth);
+  EXPECT_TRUE(check(crown, tooth.mesh).holds());
+  EXPECT_GT(tooth.record.kept_triangles, 0.55 * tooth.record.crown_triangles);
+  EXPECT_LT(tooth.record.growth_axis.y(), -0.9) << "upper teeth of this scan hang from above";
+}
+
+}  // namespace
+}  // namespace rhizodont

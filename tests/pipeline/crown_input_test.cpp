@@ -1,0 +1,101 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "pipeline/crown_input.hpp"
+
+#include "mesh/adjacency.hpp"
+#include "mesh/test_meshes.hpp"
+#include "rhizodont/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace rhizodont {
+namespace {
+
+/// A bowl turned upside down, 8 mm across: what is left of a ball above its equator.
+TriangleMesh bowl() {
+  const TriangleMesh ball = test::sphere(3, 4);
+  std::vector<bool> above;
+  for (const Triangle& t : ball.triangles) {
+    bool all = true;
+    for (const int v : t) all = all && ball.vertices[static_cast<std::size_t>(v)].z() > -1e-9;
+    above.push_back(all);
+  }
+  return submesh(ball, above).mesh;
+}
+
+/// Runs all checks and returns what is said, or nothing.
+std::string complaint(const TriangleMesh& crown, double millimetres_per_unit = 1) {
+  try {
+    require_usable_crown(crown);
+    require_tooth_size(crown, millimetres_per_unit);
+    require_outward_and_uncut(crown);
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.code(), ErrorCode::unusable_input);
+    return error.what();
+  }
+  return {};
+}
+
+void expect_complaint(const TriangleMesh& crown, const std::string& words) {
+  const std::string said = complaint(crown);
+  EXPECT_NE(said.find(words), std::string::npos) << "said: " << said;
+}
+
+TriangleMesh scaled(TriangleMesh mesh, double factor) {
+  for (Point& p : mesh.vertices) p *= factor;
+  return mesh;
+}
+
+TEST(CrownInput, AGoodCrownPasses) { EXPECT_EQ(complaint(bowl()), ""); }
+
+TEST(CrownInput, DamagedMeshesAreRefused) {
+  expect_complaint({}, "no triangles");
+  TriangleMesh mesh = bowl();
+  mesh.vertices[5].y() = std::numeric_limits<double>::quiet_NaN();
+  expect_complaint(mesh, "not numbers");
+  mesh = bowl();
+  mesh.triangles[7][1] = 100000;
+  expect_complaint(mesh, "do not exist");
+  mesh = bowl();
+  mesh.triangles[7][1] = mesh.triangles[7][0];
+  expect_complaint(mesh, "one vertex twice");
+  mesh = bowl();
+  std::swap(mesh.triangles[20][0], mesh.triangles[20][1]);
+  expect_complaint(mesh, "flipped against their neighbours");
+  mesh = bowl();
+  mesh.vertices.emplace_back(0, 0, 9);
+  mesh.triangles.push_back({mesh.triangles[3][0], mesh.triangles[3][1], static_cast<int>(mesh.vertices.size()) - 1});
+  expect_complaint(mesh, "more than two triangles");
+  expect_complaint(test::together(bowl(), bowl(), Point(20, 0, 0)), "2 separate pieces");
+  expect_complaint(flipped(bowl()), "face inwards");
+}
+
+TEST(CrownInput, TheUnitIsGuessedFromTheSize) {
+  expect_complaint(scaled(bowl(), 1e-3), "metres (--unit m)");
+  expect_complaint(scaled(bowl(), 0.1), "centimetres (--unit cm)");
+  expect_complaint(scaled(bowl(), 1 / 25.4), "inches (--unit in)");
+  expect_complaint(scaled(bowl(), 1e4), "teeth are 2 to 20 mm");
+  // Read as centimetres, a crown in millimetres is too large; the hint speaks of the raw size.
+  const TriangleMesh wrong = scaled(bowl(), 10);
+  EXPECT_THROW(require_tooth_size(wrong, 10), InputError);
+}
+
+TEST(CrownInput, ACrownThatCutsItselfIsRefusedWithTheTriangles) {
+  TriangleMesh mesh = bowl();
+  // The top is pushed through the opposite wall.
+  for (Point& p : mesh.vertices)
+    if (p.z() > 3.9) p = Point(6, 0.1, 1);
+  try {
+    require_outward_and_uncut(mesh);
+    FAIL() << "nothing was said";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("cuts itself"), std::string::npos);
+    EXPECT_FALSE(error.elements().empty());
+  }
+}
+
+}  // namespace
+}  // namespace rhizodont
