@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "atlas/completion_sample.hpp"
+#include "atlas/random_stream.hpp"
 #include "commands.hpp"
 #include "learning/blas.hpp"
 #include "learning/train_completion.hpp"
+#include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
 #include <fmt/chrono.h>
@@ -13,6 +15,7 @@
 #include <ctime>
 #include <fstream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 namespace rhizodont::command_line {
@@ -32,9 +35,35 @@ std::vector<Eigen::Vector3f> to_points(const std::vector<float>& xyz) {
   return points;
 }
 
-TrainingSample to_training_sample(const CompletionSample& sample) {
-  return {to_points(sample.input), to_points(sample.target), to_points(sample.target_normals), sample.target_root,
-          sample.type};
+/// Adds the generated tooth's vertices, which correspond wherever a type's own template was bent and not a borrowed
+/// one.
+void add_matches(const ToothFamilies& families, const CompletionSample& sample, std::uint64_t seed,
+                 TrainingSample& result) {
+  RandomStream random(seed, 100);  // as in make_completion_sample: the type, then the tooth
+  random.bits();
+  const SyntheticTooth tooth = generate_tooth(families, sample.type, random.bits());
+  const Point apex = sample.frame.to_canonical(tooth.apices.at(0));
+  if (sample.apices.empty() || (apex - sample.apices[0]).norm() > 1e-9)
+    throw std::logic_error("the generated tooth is not the sample's");
+  if (tooth.mesh.triangles != families.templates[static_cast<std::size_t>(sample.type)].mesh.triangles) return;
+  const std::vector<Eigen::Vector3d> normals = vertex_normals(tooth.mesh);
+  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v) {
+    result.matched.push_back(sample.frame.to_canonical(tooth.mesh.vertices[v]).cast<float>());
+    result.matched_normals.push_back(sample.frame.direction_to_canonical(normals[v]).cast<float>());
+    result.matched_root.push_back(tooth.crown[v] != 0 ? 0 : 1);
+  }
+}
+
+TrainingSample make_sample(const ToothFamilies& families, std::uint64_t seed, const CompletionSampleOptions& options) {
+  const CompletionSample sample = make_completion_sample(families, seed, options);
+  TrainingSample result;
+  result.input = to_points(sample.input);
+  result.target = to_points(sample.target);
+  result.normals = to_points(sample.target_normals);
+  result.is_root = sample.target_root;
+  result.type = sample.type;
+  add_matches(families, sample, seed, result);
+  return result;
 }
 
 void train(const TrainCommand& command) {
@@ -49,9 +78,8 @@ void train(const TrainCommand& command) {
     fmt::print("{:%F %T} {}\n", fmt::localtime(std::time(nullptr)), line);
     std::fflush(stdout);
   };
-  const TrainingResult result = train_completion(
-      [&](std::uint64_t index) { return to_training_sample(make_completion_sample(families, index, command.samples)); },
-      options);
+  const TrainingResult result =
+      train_completion([&](std::uint64_t index) { return make_sample(families, index, command.samples); }, options);
   fmt::print("{} samples, best root Chamfer distance on held-out teeth {:.3f} mm; checkpoint in {}\n", result.samples,
              result.best_root_chamfer, options.folder.string());
 }

@@ -17,6 +17,11 @@ std::span<const float> row(const torch::Tensor& points, std::int64_t b) {
   return {points.data_ptr<float>() + b * size, static_cast<std::size_t>(size)};
 }
 
+/// Over the second axis; 0 where all weights are.
+torch::Tensor weighted_mean(const torch::Tensor& values, const torch::Tensor& weights) {
+  return (values * weights).sum(1) / weights.sum(1).clamp_min(1e-6);
+}
+
 }  // namespace
 
 ClosestPoints closest_points(const torch::Tensor& first, const torch::Tensor& second) {
@@ -51,26 +56,45 @@ torch::Tensor weighted_chamfer(const torch::Tensor& predicted, const torch::Tens
   const torch::Tensor forth = safe_length(predicted - gather_rows(target, closest.first_to_second));
   const torch::Tensor back = safe_length(gather_rows(predicted, closest.second_to_first) - target);
   const torch::Tensor shares = gather_rows(weights.unsqueeze(-1), closest.first_to_second).squeeze(-1);
-  return 0.5 * ((forth * shares).sum() / shares.sum() + (back * weights).sum() / weights.sum());
+  return 0.5 * (weighted_mean(forth, shares) + weighted_mean(back, weights));
 }
 
 torch::Tensor patch_chamfer(const torch::Tensor& predicted, const torch::Tensor& target) {
   const torch::Tensor squared = (predicted.unsqueeze(3) - target.unsqueeze(2)).square().sum(-1) + 1e-8;
   const torch::Tensor forth = std::get<0>(squared.min(3)), back = std::get<0>(squared.min(2));
-  return 0.5 * (torch::sqrt(forth).mean() + torch::sqrt(back).mean());
+  return 0.5 * (torch::sqrt(forth) + torch::sqrt(back)).mean({1, 2});
 }
 
 LossTerms training_loss(const Prediction& prediction, const TargetBatch& target, const TrainingOptions& options) {
   const torch::Tensor weights = 1 + (options.root_weight - 1) * target.root;
-  const ClosestPoints coarse = closest_points(prediction.coarse, target.points);
-  const ClosestPoints fine = closest_points(prediction.fine, target.points);
+  const torch::Tensor matched_weights = 1 + (options.root_weight - 1) * target.matched_root;
+  const torch::Tensor is_matched = target.is_matched, is_free = 1 - is_matched;
+  const std::int64_t batch = target.points.size(0), queries = prediction.coarse.size(1);
+  const ClosestPoints closest = closest_points(prediction.fine, target.points);
+  const ClosestPoints closest_coarse = closest_points(prediction.coarse, target.points);
+
+  const torch::Tensor chamfer = weighted_chamfer(prediction.fine, target.points, weights, closest);
+  const torch::Tensor match = weighted_mean(safe_length(prediction.fine - target.matched), matched_weights);
+  const torch::Tensor middles = target.matched.view({batch, queries, -1, 3}).mean(2);
+  const torch::Tensor coarse = is_matched * weighted_mean(safe_length(prediction.coarse - middles),
+                                                          matched_weights.view({batch, queries, -1}).select(2, 0)) +
+                               is_free * weighted_chamfer(prediction.coarse, target.points, weights, closest_coarse);
+  const torch::Tensor true_normals = gather_rows(target.normals, closest.first_to_second);
+  const torch::Tensor wanted = torch::where(is_matched.view({-1, 1, 1}) > 0, target.matched_normals, true_normals);
+  const torch::Tensor normal = (1 - (prediction.normals * wanted).sum(-1)).mean(1);
+
   LossTerms terms;
-  terms.coarse = weighted_chamfer(prediction.coarse, target.points, weights, coarse);
-  terms.fine = weighted_chamfer(prediction.fine, target.points, weights, fine);
-  terms.denoise =
-      prediction.denoised.defined() ? patch_chamfer(prediction.denoised, target.denoise_target) : torch::zeros({});
-  terms.normal = (1 - (prediction.normals * gather_rows(target.normals, fine.first_to_second)).sum(-1)).mean();
-  terms.total = terms.fine + options.coarse_weight * terms.coarse + options.denoise_weight * terms.denoise +
+  terms.coarse = coarse.mean();
+  terms.match = (is_matched * match).sum() / is_matched.sum().clamp_min(1);
+  terms.chamfer = chamfer.mean();
+  terms.normal = normal.mean();
+  terms.denoise = torch::zeros({});
+  if (prediction.denoised.defined())
+    terms.denoise = (is_matched * safe_length(prediction.denoised - target.denoise_target).mean({1, 2}) +
+                     is_free * patch_chamfer(prediction.denoised, target.denoise_target))
+                        .mean();
+  terms.total = (is_matched * (match + options.chamfer_weight * chamfer) + is_free * chamfer).mean() +
+                options.coarse_weight * terms.coarse + options.denoise_weight * terms.denoise +
                 options.normal_weight * terms.normal;
   return terms;
 }

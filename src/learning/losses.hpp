@@ -27,31 +27,40 @@ torch::Tensor safe_length(const torch::Tensor& vectors);
 
 /// Weighted Chamfer-L1 between predicted points (B x N x 3) and target points (B x M x 3, weights B x M):
 /// half the weighted mean distance from target to prediction plus half that from prediction to target, where a
-/// predicted point has the weight of the target point closest to it. Means run over the whole batch. A scalar.
+/// predicted point has the weight of the target point closest to it. One value per sample: B.
 torch::Tensor weighted_chamfer(const torch::Tensor& predicted, const torch::Tensor& target,
                                const torch::Tensor& weights, const ClosestPoints& closest);
 
-/// Chamfer-L1 of small point sets, one pair per patch: predicted and target B x P x f x 3. A scalar.
+/// Mean Chamfer-L1 of small point sets, one pair per patch: predicted and target B x P x f x 3. One value per sample.
 torch::Tensor patch_chamfer(const torch::Tensor& predicted, const torch::Tensor& target);
 
 /// The truth that a batch is compared with.
 struct TargetBatch {
-  torch::Tensor points;          ///< float, B x M x 3
-  torch::Tensor normals;         ///< float, B x M x 3, unit length
-  torch::Tensor root;            ///< float, B x M: 1 below the crown, 0 on it
-  torch::Tensor seeds;           ///< float, B x n x 3: disturbed target points; undefined: no denoising
-  torch::Tensor denoise_target;  ///< float, B x n x patch_points x 3
+  torch::Tensor points;           ///< float, B x M x 3
+  torch::Tensor normals;          ///< float, B x M x 3, unit length
+  torch::Tensor root;             ///< float, B x M: 1 below the crown, 0 on it
+  torch::Tensor seeds;            ///< float, B x n x 3: disturbed target points; undefined: no denoising
+  torch::Tensor denoise_target;   ///< float, B x n x patch_points x 3; in the patch's own order where matched
+  torch::Tensor is_matched;       ///< float, B: 1 where the next three are known, 0 where they are zero
+  torch::Tensor matched;          ///< float, B x (queries patch_points) x 3: where each predicted point belongs
+  torch::Tensor matched_normals;  ///< as matched, unit length
+  torch::Tensor matched_root;     ///< float, B x (queries patch_points): 1 on the root
 };
 
-/// Terms of the training loss, canonical units.
+/// Terms of the training loss, canonical units, means over the batch.
 struct LossTerms {
   torch::Tensor total;    ///< weighted sum
-  torch::Tensor coarse;   ///< Chamfer-L1 of the queries' starting points
-  torch::Tensor fine;     ///< Chamfer-L1 of all points
-  torch::Tensor denoise;  ///< Chamfer-L1 per denoising patch; 0 without
-  torch::Tensor normal;   ///< mean of 1 - cos between a point's normal and that of the closest target point
+  torch::Tensor coarse;   ///< of the queries' starting points
+  torch::Tensor match;    ///< weighted mean distance of points from where they belong; over matched samples
+  torch::Tensor chamfer;  ///< Chamfer-L1 of all points
+  torch::Tensor denoise;  ///< of the denoising patches; 0 without
+  torch::Tensor normal;   ///< mean of 1 - cos between a point's normal and the true one
 };
 
+/// Where it is known which target point is which, each point is drawn to its own place: unlike the Chamfer distance,
+/// which is least for points scattered over all places where an unpredictable surface may be, this has the median
+/// surface as its optimum, smooth and evenly covered. The Chamfer distance does the rest: samples without
+/// correspondence, and a share of `chamfer_weight` of the others.
 LossTerms training_loss(const Prediction& prediction, const TargetBatch& target, const TrainingOptions& options);
 
 }  // namespace rhizodont

@@ -36,12 +36,13 @@ double minutes_since(Clock::time_point then) { return std::chrono::duration<doub
 
 /// The terms of a loss as numbers, summed or averaged over steps.
 struct Figures {
-  double total = 0, coarse = 0, fine = 0, denoise = 0, normal = 0, gradient = 0;
+  double total = 0, coarse = 0, match = 0, chamfer = 0, denoise = 0, normal = 0, gradient = 0;
 
   Figures& operator+=(const Figures& other) {
     total += other.total;
     coarse += other.coarse;
-    fine += other.fine;
+    match += other.match;
+    chamfer += other.chamfer;
     denoise += other.denoise;
     normal += other.normal;
     gradient += other.gradient;
@@ -50,8 +51,13 @@ struct Figures {
 };
 
 Figures to_figures(const LossTerms& terms) {
-  return {terms.total.item<double>(),   terms.coarse.item<double>(), terms.fine.item<double>(),
-          terms.denoise.item<double>(), terms.normal.item<double>(), 0};
+  return {terms.total.item<double>(),
+          terms.coarse.item<double>(),
+          terms.match.item<double>(),
+          terms.chamfer.item<double>(),
+          terms.denoise.item<double>(),
+          terms.normal.item<double>(),
+          0};
 }
 
 /// What one thread brings back from its share of a batch.
@@ -99,6 +105,7 @@ class Trainer {
   mutable AdaPoinTr network_;
   std::vector<torch::Tensor> parameters_;
   std::vector<TrainedTensor> tensors_;
+  std::vector<PointLayout> layouts_;
   TrainingResult result_;
 };
 
@@ -113,8 +120,10 @@ Trainer::Trainer(const SampleProvider& provider, const TrainingOptions& options)
   parameters_ = network_->parameters();
   tensors_ = trained_tensors(*network_);
   if (options.resume && load_checkpoint()) return;
-  const auto anchors = initial_anchors(provider, options.shape);
-  for (int type = 0; type <= unknown_type; ++type) network_->set_anchors(type, anchors[static_cast<std::size_t>(type)]);
+  QueryLayout layout = initial_layout(provider, options.shape);
+  for (int type = 0; type <= unknown_type; ++type)
+    network_->set_anchors(type, layout.anchors[static_cast<std::size_t>(type)]);
+  layouts_ = std::move(layout.points);
   for (TrainedTensor& tensor : tensors_) tensor.average.copy_(tensor.value);
 }
 
@@ -125,7 +134,8 @@ void Trainer::log(const std::string& line) const {
 /// Loss and gradients of samples `first` .. `first + batch / threads - 1`.
 Share Trainer::work(std::uint64_t first) const {
   const TensorThreads one_thread(1);  // counts per thread: this may be a fresh one
-  const TrainingBatch batch = make_training_batch(provider_, first, options_.batch / options_.threads, options_, true);
+  const TrainingBatch batch =
+      make_training_batch(provider_, layouts_, first, options_.batch / options_.threads, options_, true);
   const Prediction prediction = network_->forward(batch.crowns, batch.target.seeds, precision_);
   const LossTerms terms = training_loss(prediction, batch.target, options_);
   Share share;
@@ -161,7 +171,8 @@ Figures Trainer::step() {
   step.average_decay = std::min(options_.average_decay, (1 + done) / (10 + done));
   step.step = static_cast<std::int64_t>(result_.steps) + 1;
   Figures figures = sum.figures;
-  for (double* value : {&figures.total, &figures.coarse, &figures.fine, &figures.denoise, &figures.normal})
+  for (double* value :
+       {&figures.total, &figures.coarse, &figures.match, &figures.chamfer, &figures.denoise, &figures.normal})
     *value *= scale;
   figures.gradient = adamw_step(tensors_, sum.gradients, step);
   ++result_.steps;
@@ -171,15 +182,16 @@ Figures Trainer::step() {
 }
 
 void Trainer::log_progress(const Figures& sum, std::uint64_t steps, double minutes) const {
-  char line[256];
+  char line[320];
   const auto n = static_cast<double>(steps);
-  std::snprintf(
-      line, sizeof line,
-      "step %llu samples %llu loss %.4f coarse %.3f mm fine %.3f mm denoise %.3f mm normal %.4f gradient %.2f "
-      "rate %.2e %.1f samples/s",
-      static_cast<unsigned long long>(result_.steps), static_cast<unsigned long long>(result_.samples), sum.total / n,
-      sum.coarse / n * unit_mm, sum.fine / n * unit_mm, sum.denoise / n * unit_mm, sum.normal / n, sum.gradient / n,
-      learning_rate(options_, result_.steps - 1), n * options_.batch / (minutes * 60));
+  std::snprintf(line, sizeof line,
+                "step %llu samples %llu loss %.4f coarse %.3f mm match %.3f mm chamfer %.3f mm denoise %.3f mm normal "
+                "%.4f gradient %.2f "
+                "rate %.2e %.1f samples/s",
+                static_cast<unsigned long long>(result_.steps), static_cast<unsigned long long>(result_.samples),
+                sum.total / n, sum.coarse / n * unit_mm, sum.match / n * unit_mm, sum.chamfer / n * unit_mm,
+                sum.denoise / n * unit_mm, sum.normal / n, sum.gradient / n, learning_rate(options_, result_.steps - 1),
+                n * options_.batch / (minutes * 60));
   log(line);
 }
 
@@ -196,12 +208,13 @@ void Trainer::validate() {
   const int batches = options_.validation_samples / batch;
   for (int i = 0; i < batches; ++i) {
     const auto first = first_validation_sample + static_cast<std::uint64_t>(i * batch);
-    const TrainingBatch samples = make_training_batch(provider_, first, batch, options_, false);
+    const TrainingBatch samples = make_training_batch(provider_, layouts_, first, batch, options_, false);
     const Prediction prediction = network_->forward(samples.crowns, {}, precision_);
     const TargetBatch& target = samples.target;
     const ClosestPoints closest = closest_points(prediction.fine, target.points);
-    whole += weighted_chamfer(prediction.fine, target.points, torch::ones_like(target.root), closest).item<double>();
-    root += weighted_chamfer(prediction.fine, target.points, target.root, closest).item<double>();
+    whole +=
+        weighted_chamfer(prediction.fine, target.points, torch::ones_like(target.root), closest).mean().item<double>();
+    root += weighted_chamfer(prediction.fine, target.points, target.root, closest).mean().item<double>();
     const torch::Tensor deepest = std::get<0>(prediction.fine.select(2, 2).min(1));
     length += (deepest - std::get<0>(target.points.select(2, 2).min(1))).abs().mean().item<double>();
     const torch::Tensor cosine =
@@ -257,6 +270,9 @@ void Trainer::save_checkpoint() const {
     file.tensors["square." + tensor.name] = store_tensor(tensor.square, TensorType::float32);
     file.tensors["average." + tensor.name] = store_tensor(tensor.average, TensorType::float32);
   }
+  for (std::size_t type = 0; type < layouts_.size(); ++type)
+    file.tensors["layout." + std::to_string(type)] =
+        store_integers(layouts_[type], {static_cast<std::int64_t>(layouts_[type].size())});
   note_shape(options_.shape, file.metadata);
   file.metadata["training.samples"] = std::to_string(result_.samples);
   file.metadata["training.steps"] = std::to_string(result_.steps);
@@ -282,6 +298,12 @@ bool Trainer::load_checkpoint() {
     load_tensor(file, "mean." + tensor.name, tensor.mean);
     load_tensor(file, "square." + tensor.name, tensor.square);
     load_tensor(file, "average." + tensor.name, tensor.average);
+  }
+  for (int type = 0; type < tooth_types; ++type) {
+    const auto found = file.tensors.find("layout." + std::to_string(type));
+    if (found == file.tensors.end() || found->second.type != TensorType::int32)
+      throw InputError("The checkpoint in " + options_.folder.string() + " lacks the layout of the output.");
+    layouts_.push_back(load_integers(found->second));
   }
   try {
     result_.samples = std::stoull(file.metadata.at("training.samples"));

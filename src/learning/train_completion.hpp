@@ -40,11 +40,12 @@ struct TrainingOptions {
   double average_decay = 0.998;     ///< of the running mean of the weights that is validated and exported, 0..1
   double unknown_share = 0.1;       ///< share of samples whose type is hidden, 0..1
   double root_weight = 3;           ///< weight of target points below the crown beside those on it, > 0
-  double coarse_weight = 1;         ///< of the Chamfer term of the queries
-  double denoise_weight = 0.5;      ///< of the Chamfer term of the denoising queries
+  double coarse_weight = 0.5;       ///< of the queries' starting points
+  double denoise_weight = 0.5;      ///< of the denoising queries
+  double chamfer_weight = 0.2;      ///< of the Chamfer term of samples whose correspondence is known, >= 0
   double normal_weight = 0.1;       ///< of the term 1 - cos, beside lengths in units of 12 mm
   int denoise_queries = 32;         ///< extra queries in training, >= 0
-  double denoise_jitter = 0.04;     ///< standard deviation of their displacement, units of 12 mm
+  double denoise_jitter = 0.05;     ///< standard deviation of their displacement, units of 12 mm
   bool half_precision = true;       ///< bfloat16 for matrix products where the processor has them
   int threads = 2;                  ///< each works on its share of a batch, >= 1, divides `batch`
   std::uint64_t seed = 1;           ///< of weights, noise and sample numbers

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "learning/training_batch.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <random>
+#include <span>
 
 #include "learning/neighbours.hpp"
 #include "rhizodont/error.hpp"
@@ -14,7 +16,7 @@
 namespace rhizodont {
 namespace {
 
-constexpr double root_share_of_queries = 0.75;
+constexpr double root_share = 0.75;
 
 std::vector<float> flatten(const std::vector<Eigen::Vector3f>& points) {
   std::vector<float> xyz;
@@ -27,29 +29,77 @@ bool all_finite(const std::vector<Eigen::Vector3f>& points) {
   return std::all_of(points.begin(), points.end(), [](const Eigen::Vector3f& p) { return p.allFinite(); });
 }
 
-/// `count` points spread over those with the flag; empty if there are too few.
-std::vector<float> spread(const TrainingSample& sample, std::optional<bool> root, int count) {
+/// Up to `count` indices spread over the points whose flag is `root`.
+std::vector<std::int32_t> spread(const std::vector<Eigen::Vector3f>& points, const std::vector<std::uint8_t>& is_root,
+                                 bool root, int count) {
   std::vector<float> xyz;
-  for (std::size_t i = 0; i < sample.target.size(); ++i) {
-    if (root && (sample.is_root[i] != 0) != *root) continue;
-    xyz.insert(xyz.end(), sample.target[i].data(), sample.target[i].data() + 3);
+  std::vector<std::int32_t> chosen;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if ((is_root[i] != 0) != root) continue;
+    xyz.insert(xyz.end(), points[i].data(), points[i].data() + 3);
+    chosen.push_back(static_cast<std::int32_t>(i));
   }
-  if (xyz.size() < 3 * static_cast<std::size_t>(count)) return {};
-  std::vector<float> chosen;
-  for (const std::int32_t i : farthest_point_order(xyz, count))
-    chosen.insert(chosen.end(), xyz.begin() + 3 * i, xyz.begin() + 3 * i + 3);
+  std::vector<std::int32_t> order = farthest_point_order(xyz, std::min(count, static_cast<int>(chosen.size())));
+  for (std::int32_t& i : order) i = chosen[static_cast<std::size_t>(i)];
+  return order;
+}
+
+/// `count` indices spread over root and crown, three quarters of them on the root if both have enough.
+std::vector<std::int32_t> spread_over_tooth(const std::vector<Eigen::Vector3f>& points,
+                                            const std::vector<std::uint8_t>& is_root, int count) {
+  const auto on_root = static_cast<int>(std::count(is_root.begin(), is_root.end(), 1));
+  const auto on_crown = static_cast<int>(points.size()) - on_root;
+  if (on_root + on_crown < count) throw InputError("A training sample has too few points for the network's output.");
+  const int wanted = static_cast<int>(std::lround(count * root_share));
+  const int root_count = std::min(std::max(wanted, count - on_crown), on_root);
+  std::vector<std::int32_t> chosen = spread(points, is_root, true, root_count);
+  const std::vector<std::int32_t> crown = spread(points, is_root, false, count - root_count);
+  chosen.insert(chosen.end(), crown.begin(), crown.end());
   return chosen;
 }
 
-std::vector<float> anchors_on(const TrainingSample& sample, int queries) {
-  const int on_root = static_cast<int>(std::lround(queries * root_share_of_queries));
-  std::vector<float> anchors = spread(sample, true, on_root);
-  const std::vector<float> crown = spread(sample, false, queries - on_root);
-  if (anchors.empty() || crown.empty())
-    anchors = spread(sample, std::nullopt, queries);
-  else
-    anchors.insert(anchors.end(), crown.begin(), crown.end());
-  if (anchors.empty()) throw InputError("A training sample has fewer target points than the network has queries.");
+/// Orders indices so that those of each of `groups` equally large groups lie side by side in space and in the list:
+/// halves along the longest axis, again and again.
+void group(std::span<std::int32_t> indices, const std::vector<Eigen::Vector3f>& points, std::size_t groups) {
+  if (indices.size() < 2) return;
+  Eigen::AlignedBox3f box;
+  for (const std::int32_t i : indices) box.extend(points[static_cast<std::size_t>(i)]);
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  const auto before = [&](std::int32_t a, std::int32_t b) {
+    const float p = points[static_cast<std::size_t>(a)][axis], q = points[static_cast<std::size_t>(b)][axis];
+    return p < q || (p == q && a < b);
+  };
+  std::sort(indices.begin(), indices.end(), before);
+  // Within a group the halving goes on, so that a patch's points come in a similar order everywhere.
+  const std::size_t first = groups > 1 ? groups / 2 * (indices.size() / groups) : indices.size() / 2;
+  group(indices.first(first), points, std::max<std::size_t>(groups / 2, 1));
+  group(indices.subspan(first), points, std::max<std::size_t>(groups - groups / 2, 1));
+}
+
+PointLayout layout_of(const TrainingSample& sample, const CompletionShape& shape) {
+  if (sample.matched.empty()) return {};
+  PointLayout layout = spread_over_tooth(sample.matched, sample.matched_root, shape.queries * shape.patch_points);
+  group(layout, sample.matched, static_cast<std::size_t>(shape.queries));
+  return layout;
+}
+
+std::vector<float> anchors_of(const TrainingSample& sample, const PointLayout& layout, const CompletionShape& shape) {
+  std::vector<float> anchors;
+  if (layout.empty()) {
+    for (const std::int32_t i : spread_over_tooth(sample.target, sample.is_root, shape.queries)) {
+      const Eigen::Vector3f& p = sample.target[static_cast<std::size_t>(i)];
+      anchors.insert(anchors.end(), p.data(), p.data() + 3);
+    }
+    return anchors;
+  }
+  const auto each = static_cast<std::size_t>(shape.patch_points);
+  for (std::size_t begin = 0; begin < layout.size(); begin += each) {
+    Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+    for (std::size_t i = begin; i < begin + each; ++i) middle += sample.matched[static_cast<std::size_t>(layout[i])];
+    middle /= static_cast<float>(each);
+    anchors.insert(anchors.end(), middle.data(), middle.data() + 3);
+  }
   return anchors;
 }
 
@@ -57,6 +107,22 @@ float depth(const TrainingSample& sample) {
   float lowest = 0;
   for (const Eigen::Vector3f& p : sample.target) lowest = std::min(lowest, p.z());
   return lowest;
+}
+
+/// Disturbed middles of patches that are drawn at random, and where the points of these patches belong.
+void add_matched_seeds(const float* matched, const TrainingOptions& options, std::mt19937_64& random, float* seeds,
+                       float* patches) {
+  const int each = options.shape.patch_points;
+  std::uniform_int_distribution<int> patch(0, options.shape.queries - 1);
+  std::normal_distribution<float> jitter(0, static_cast<float>(options.denoise_jitter));
+  for (int s = 0; s < options.denoise_queries; ++s, seeds += 3, patches += 3 * each) {
+    const float* points = matched + std::ptrdiff_t{3} * each * patch(random);
+    std::copy_n(points, 3 * each, patches);
+    for (int axis = 0; axis < 3; ++axis) {
+      seeds[axis] = jitter(random);
+      for (int i = 0; i < each; ++i) seeds[axis] += points[3 * i + axis] / static_cast<float>(each);
+    }
+  }
 }
 
 /// Disturbed target points and what a patch that starts at each of them has to become.
@@ -72,6 +138,36 @@ void add_seeds(const std::vector<float>& target, const TrainingOptions& options,
     patches = std::copy_n(target.data() + 3 * static_cast<std::size_t>(i), 3, patches);
 }
 
+void reserve(TargetBatch& target, std::int64_t count, std::int64_t points, std::int64_t seeds,
+             const CompletionShape& shape) {
+  const std::int64_t outputs = std::int64_t{shape.queries} * shape.patch_points;
+  target.points = torch::empty({count, points, 3});
+  target.normals = torch::empty({count, points, 3});
+  target.root = torch::empty({count, points});
+  target.is_matched = torch::zeros({count});
+  target.matched = torch::zeros({count, outputs, 3});
+  target.matched_normals = torch::zeros({count, outputs, 3});
+  target.matched_root = torch::zeros({count, outputs});
+  if (seeds == 0) return;
+  target.seeds = torch::empty({count, seeds, 3});
+  target.denoise_target = torch::empty({count, seeds, shape.patch_points, 3});
+}
+
+void add_matches(const TrainingSample& sample, const PointLayout& layout, TargetBatch& target, std::int64_t b) {
+  float* points = target.matched[b].data_ptr<float>();
+  float* normals = target.matched_normals[b].data_ptr<float>();
+  float* root = target.matched_root[b].data_ptr<float>();
+  for (const std::int32_t index : layout) {
+    const auto i = static_cast<std::size_t>(index);
+    if (i >= sample.matched.size())
+      throw InputError("Training samples of a type differ in their corresponding points.");
+    points = std::copy_n(sample.matched[i].data(), 3, points);
+    normals = std::copy_n(sample.matched_normals[i].data(), 3, normals);
+    *root++ = static_cast<float>(sample.matched_root[i]);
+  }
+  target.is_matched[b] = 1;
+}
+
 }  // namespace
 
 void check_sample(const TrainingSample& sample, const CompletionShape& shape) {
@@ -82,11 +178,14 @@ void check_sample(const TrainingSample& sample, const CompletionShape& shape) {
     throw InputError("A training sample's target points, normals and marks are not equally many.");
   if (!all_finite(sample.input) || !all_finite(sample.target) || !all_finite(sample.normals))
     throw InputError("A training sample has values that are not numbers.");
+  if (sample.matched_normals.size() != sample.matched.size() || sample.matched_root.size() != sample.matched.size() ||
+      !all_finite(sample.matched) || !all_finite(sample.matched_normals))
+    throw InputError("A training sample's corresponding points, normals and marks do not fit together.");
   if (sample.type < 0 || sample.type > unknown_type) throw InputError("A training sample's tooth type is unknown.");
 }
 
-TrainingBatch make_training_batch(const SampleProvider& provider, std::uint64_t first, int count,
-                                  const TrainingOptions& options, bool training) {
+TrainingBatch make_training_batch(const SampleProvider& provider, const std::vector<PointLayout>& layouts,
+                                  std::uint64_t first, int count, const TrainingOptions& options, bool training) {
   std::vector<std::vector<float>> crowns;
   std::vector<std::int64_t> types;
   TrainingBatch batch;
@@ -97,17 +196,8 @@ TrainingBatch make_training_batch(const SampleProvider& provider, std::uint64_t 
     const TrainingSample sample = provider(number);
     check_sample(sample, options.shape);
     const auto points = static_cast<std::int64_t>(sample.target.size());
-    if (b == 0) {
-      target.points = torch::empty({count, points, 3});
-      target.normals = torch::empty({count, points, 3});
-      target.root = torch::empty({count, points});
-      if (seeds > 0) {
-        target.seeds = torch::empty({count, seeds, 3});
-        target.denoise_target = torch::empty({count, seeds, options.shape.patch_points, 3});
-      }
-    } else if (points != target.points.size(1)) {
-      throw InputError("Training samples differ in their number of target points.");
-    }
+    if (b == 0) reserve(target, count, points, seeds, options.shape);
+    if (points != target.points.size(1)) throw InputError("Training samples differ in their number of target points.");
     if (points < std::max<std::int64_t>(seeds, options.shape.patch_points))
       throw InputError("A training sample has fewer target points than denoising queries.");
     crowns.push_back(flatten(sample.input));
@@ -117,16 +207,27 @@ TrainingBatch make_training_batch(const SampleProvider& provider, std::uint64_t 
     std::copy(sample.is_root.begin(), sample.is_root.end(), target.root[b].data_ptr<float>());
     std::seed_seq sequence{options.seed, number >> 32, number & 0xffffffffU};
     std::mt19937_64 random(sequence);
-    const bool hide = std::uniform_real_distribution<double>(0, 1)(random) < options.unknown_share;
-    types.push_back(training && hide ? unknown_type : sample.type);
-    if (seeds > 0)
-      add_seeds(xyz, options, random, target.seeds[b].data_ptr<float>(), target.denoise_target[b].data_ptr<float>());
+    const bool hide = training && std::uniform_real_distribution<double>(0, 1)(random) < options.unknown_share;
+    const int type = hide ? unknown_type : sample.type;
+    types.push_back(type);
+    // Who does not know the type cannot know which point is which either.
+    const bool matched =
+        type != unknown_type && !sample.matched.empty() && !layouts[static_cast<std::size_t>(type)].empty();
+    if (matched) add_matches(sample, layouts[static_cast<std::size_t>(type)], target, b);
+    if (seeds == 0) continue;
+    float* starts = target.seeds[b].data_ptr<float>();
+    float* patches = target.denoise_target[b].data_ptr<float>();
+    if (matched) {
+      add_matched_seeds(target.matched[b].data_ptr<float>(), options, random, starts, patches);
+    } else {
+      add_seeds(xyz, options, random, starts, patches);
+    }
   }
   batch.crowns = make_crown_batch(options.shape, crowns, types);
   return batch;
 }
 
-std::vector<std::vector<float>> initial_anchors(const SampleProvider& provider, const CompletionShape& shape) {
+QueryLayout initial_layout(const SampleProvider& provider, const CompletionShape& shape) {
   constexpr std::size_t samples_per_type = 7;
   constexpr std::uint64_t most_samples = 300;
   std::array<std::vector<TrainingSample>, tooth_types> found;
@@ -134,30 +235,35 @@ std::vector<std::vector<float>> initial_anchors(const SampleProvider& provider, 
   for (std::uint64_t number = 0; number < most_samples; ++number) {
     TrainingSample sample = provider(number);
     check_sample(sample, shape);
-    if (any.empty()) any = anchors_on(sample, shape.queries);
+    if (any.empty()) any = anchors_of(sample, {}, shape);
     if (sample.type == unknown_type) continue;
     auto& list = found[static_cast<std::size_t>(sample.type)];
-    if (list.size() < samples_per_type) list.push_back(std::move(sample));
+    // Where a type has samples with and without corresponding points, only the former count.
+    if (!list.empty() && list.front().matched.empty() && !sample.matched.empty()) list.clear();
+    const bool same_kind = list.empty() || list.front().matched.empty() == sample.matched.empty();
+    if (same_kind && list.size() < samples_per_type) list.push_back(std::move(sample));
   }
-  std::vector<std::vector<float>> anchors;
+  QueryLayout result;
   for (auto& list : found) {
     if (list.empty()) {
-      anchors.push_back(any);
+      result.anchors.push_back(any);
+      result.points.emplace_back();
       continue;
     }
     const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
     std::nth_element(list.begin(), middle, list.end(),
                      [](const TrainingSample& a, const TrainingSample& b) { return depth(a) < depth(b); });
-    anchors.push_back(anchors_on(*middle, shape.queries));
+    result.points.push_back(layout_of(*middle, shape));
+    result.anchors.push_back(anchors_of(*middle, result.points.back(), shape));
   }
   std::vector<float> mixed;
   for (std::size_t i = 0; i < static_cast<std::size_t>(shape.queries); ++i) {
-    const auto& from = anchors[i % tooth_types];
+    const auto& from = result.anchors[i % tooth_types];
     mixed.insert(mixed.end(), from.begin() + static_cast<std::ptrdiff_t>(3 * i),
                  from.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
   }
-  anchors.push_back(std::move(mixed));
-  return anchors;
+  result.anchors.push_back(std::move(mixed));
+  return result;
 }
 
 }  // namespace rhizodont

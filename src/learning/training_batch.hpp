@@ -19,18 +19,29 @@ struct TrainingBatch {
   TargetBatch target;
 };
 
+/// Which of a type's corresponding points each point of the output is to become: queries x patch_points indices into
+/// TrainingSample::matched, those of a patch side by side. Empty for a type without correspondence.
+using PointLayout = std::vector<std::int32_t>;
+
+/// What a network's queries start from.
+struct QueryLayout {
+  std::vector<std::vector<float>> anchors;  ///< per type and for "unknown" last: queries x 3 numbers
+  std::vector<PointLayout> points;          ///< per type
+};
+
 /// Throws InputError if a sample cannot be used: too few points, arrays of different lengths, values that are not
 /// finite, an unknown type.
 void check_sample(const TrainingSample& sample, const CompletionShape& shape);
 
 /// Samples `first` .. `first + count - 1` of the provider. With `training`, some types are hidden and denoising seeds
 /// are added, both drawn from the options' seed and the sample's number alone.
-TrainingBatch make_training_batch(const SampleProvider& provider, std::uint64_t first, int count,
-                                  const TrainingOptions& options, bool training);
+/// `layouts`: per type, as of initial_layout.
+TrainingBatch make_training_batch(const SampleProvider& provider, const std::vector<PointLayout>& layouts,
+                                  std::uint64_t first, int count, const TrainingOptions& options, bool training);
 
-/// Starting points of the queries for each type and for "unknown": (tooth_types + 1) lists of queries x 3 numbers.
-/// A type's anchors are spread over a tooth of median depth among its first samples, three quarters of them on the
-/// root; those of "unknown" are taken in turn from all types.
-std::vector<std::vector<float>> initial_anchors(const SampleProvider& provider, const CompletionShape& shape);
+/// Starting points of the queries and, where samples have corresponding points, the layout of the output.
+/// Both are spread over a tooth of median depth among a type's first samples, three quarters of the queries on the root
+/// as far as there are points; the anchors of "unknown" are taken in turn from all types.
+QueryLayout initial_layout(const SampleProvider& provider, const CompletionShape& shape);
 
 }  // namespace rhizodont

@@ -20,6 +20,12 @@ struct TrainingSample {
   std::vector<Eigen::Vector3f> normals;  ///< unit outward normals of `target`
   std::vector<std::uint8_t> is_root;     ///< 1 where a target point is on the part that the crop took away
   int type = unknown_type;               ///< 0..15, or unknown_type
+
+  /// Points of the whole tooth that correspond: in all samples of a type that have them, the same index is the same
+  /// anatomical place, and they are equally many. Empty where no correspondence is known.
+  std::vector<Eigen::Vector3f> matched;
+  std::vector<Eigen::Vector3f> matched_normals;  ///< unit outward normals of `matched`
+  std::vector<std::uint8_t> matched_root;        ///< 1 for places on the root, 0 on the crown
 };
 
 /// Numbers from here on belong to validation and are never trained on.

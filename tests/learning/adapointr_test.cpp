@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "learning/capsules.hpp"
 #include "learning/losses.hpp"
@@ -17,8 +20,13 @@ namespace {
 
 using layers::Precision;
 
+const std::vector<PointLayout>& tiny_layouts() {
+  static const std::vector<PointLayout> layouts = initial_layout(testing::tiny_sample, testing::tiny_shape()).points;
+  return layouts;
+}
+
 TrainingBatch tiny_batch(int count = 3) {
-  return make_training_batch(testing::tiny_sample, 0, count, testing::tiny_options(), true);
+  return make_training_batch(testing::tiny_sample, tiny_layouts(), 0, count, testing::tiny_options(), true);
 }
 
 TEST(AdaPoinTr, Shapes) {
@@ -64,7 +72,7 @@ TEST(AdaPoinTr, GradientReachesEveryParameter) {
   AdaPoinTr network(testing::tiny_shape());
   // All types, so that no row of the tables per type is left out.
   const TrainingOptions options = testing::tiny_options();
-  const TrainingBatch batch = make_training_batch(testing::tiny_sample, 0, 17, options, true);
+  const TrainingBatch batch = make_training_batch(testing::tiny_sample, tiny_layouts(), 0, 17, options, true);
   batch.crowns.types.copy_(torch::arange(17));
   const Prediction p = network->forward(batch.crowns, batch.target.seeds, Precision::single);
   training_loss(p, batch.target, options).total.backward();
@@ -184,20 +192,57 @@ TEST(TrainingBatch, RefusesSamplesThatCannotBeUsed) {
   bad.target[3].x() = std::numeric_limits<float>::infinity();
   EXPECT_THROW(check_sample(bad, shape), InputError);
   bad = good;
+  bad.matched_normals.pop_back();
+  EXPECT_THROW(check_sample(bad, shape), InputError);
+  bad = good;
   bad.type = 17;
   EXPECT_THROW(check_sample(bad, shape), InputError);
 }
 
-TEST(TrainingBatch, AnchorsLieOnTheType) {
-  const CompletionShape shape = testing::tiny_shape();
-  const auto anchors = initial_anchors(testing::tiny_sample, shape);
-  ASSERT_EQ(anchors.size(), 17U);
-  for (const auto& xyz : anchors) {
+TEST(TrainingBatch, AnchorsLieOnTheTooth) {
+  const QueryLayout layout = initial_layout(testing::tiny_sample, testing::tiny_shape());
+  ASSERT_EQ(layout.anchors.size(), 17U);
+  ASSERT_EQ(layout.points.size(), 16U);
+  for (const auto& xyz : layout.anchors) {
     ASSERT_EQ(xyz.size(), 72U);
     int below = 0;
     for (std::size_t i = 0; i < 24; ++i) below += xyz[3 * i + 2] < -0.2F;
-    EXPECT_GE(below, 12);
+    EXPECT_GE(below, 10);
     EXPECT_LT(below, 24);
+  }
+}
+
+TEST(TrainingBatch, LayoutGroupsDistinctNeighbours) {
+  const QueryLayout layout = initial_layout(testing::tiny_sample, testing::tiny_shape());
+  const TrainingSample sample = testing::tiny_sample(16 + 3);
+  for (std::size_t type = 0; type < 16; ++type) EXPECT_EQ(layout.points[type].size(), type < 8 ? 96U : 0U);
+  const PointLayout& points = layout.points[3];
+  EXPECT_EQ(std::set<std::int32_t>(points.begin(), points.end()).size(), 96U);
+  for (std::size_t patch = 0; patch < 24; ++patch) {
+    Eigen::AlignedBox3f box;
+    for (std::size_t i = 0; i < 4; ++i) box.extend(sample.matched[static_cast<std::size_t>(points[4 * patch + i])]);
+    EXPECT_LT(box.diagonal().norm(), 0.7F);  // the tube itself is more than 1.2 long
+  }
+}
+
+TEST(TrainingBatch, MatchesAreTheSamplesOwnPoints) {
+  TrainingOptions options = testing::tiny_options();
+  options.unknown_share = 0;
+  const TrainingBatch batch = make_training_batch(testing::tiny_sample, tiny_layouts(), 0, 10, options, true);
+  for (int b = 0; b < 10; ++b) {
+    ASSERT_EQ(batch.target.is_matched[b].item<float>(), b < 8 ? 1.0F : 0.0F);
+    if (b >= 8) continue;
+    const TrainingSample sample = testing::tiny_sample(static_cast<std::uint64_t>(b));
+    const PointLayout& layout = tiny_layouts()[static_cast<std::size_t>(b)];
+    for (int i = 0; i < 96; ++i) {
+      const auto v = static_cast<std::size_t>(layout[static_cast<std::size_t>(i)]);
+      for (int axis = 0; axis < 3; ++axis)
+        EXPECT_EQ(batch.target.matched[b][i][axis].item<float>(), sample.matched[v][axis]);
+      EXPECT_EQ(batch.target.matched_root[b][i].item<float>(), static_cast<float>(sample.matched_root[v]));
+    }
+    // each denoising seed lies near the middle of its patch
+    const torch::Tensor middles = batch.target.denoise_target[b].mean(1);
+    EXPECT_LT((middles - batch.target.seeds[b]).norm(2, -1).max().item<double>(), 0.3);
   }
 }
 
@@ -205,7 +250,8 @@ TEST(TrainingBatch, HidesTypesInTrainingOnly) {
   TrainingOptions options = testing::tiny_options();
   options.unknown_share = 0.5;
   const auto hidden = [&](bool training) {
-    return (make_training_batch(testing::tiny_sample, 0, 64, options, training).crowns.types == unknown_type)
+    return (make_training_batch(testing::tiny_sample, tiny_layouts(), 0, 64, options, training).crowns.types ==
+            unknown_type)
         .sum()
         .item<std::int64_t>();
   };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -41,6 +42,30 @@ inline TrainingSample capsule(std::uint64_t number, int input_points, int target
   return sample;
 }
 
+/// The same with corresponding points: each has its own height and angle on the tube. Numbers below `matched_types` in
+/// type have them, all others stand for types without.
+inline TrainingSample matched_capsule(std::uint64_t number, int input_points, int target_points,
+                                      int matched_types = 8) {
+  TrainingSample sample = capsule(number, input_points, target_points);
+  if (sample.type >= matched_types) return sample;
+  float lowest = 0;
+  Eigen::Vector3f middle = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& p : sample.target) lowest = std::min(lowest, p.z());
+  for (std::size_t i = 0; i < sample.target.size(); ++i)
+    middle += sample.target[i] / static_cast<float>(sample.target.size());
+  constexpr int rows = 20, columns = 8;
+  for (int i = 0; i < rows * columns; ++i) {
+    const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(i % columns) / columns;
+    const float share = static_cast<float>(i / columns) / (rows - 1);
+    const Eigen::Vector3f normal(std::cos(angle), std::sin(angle), 0);
+    sample.matched.emplace_back(0.3F * normal.x() + middle.x(), 0.3F * normal.y(),
+                                lowest * share + 0.35F * (1 - share));
+    sample.matched_normals.push_back(normal);
+    sample.matched_root.push_back(share > 0.4F ? 1 : 0);
+  }
+  return sample;
+}
+
 /// A network small enough for tests.
 inline CompletionShape tiny_shape() {
   CompletionShape shape;
@@ -69,6 +94,6 @@ inline TrainingOptions tiny_options() {
   return options;
 }
 
-inline TrainingSample tiny_sample(std::uint64_t number) { return capsule(number, 64, 128); }
+inline TrainingSample tiny_sample(std::uint64_t number) { return matched_capsule(number, 64, 128); }
 
 }  // namespace rhizodont::testing

@@ -23,8 +23,12 @@ TEST(Losses, ChamferAgreesWithFullTables) {
   torch::manual_seed(1);
   const torch::Tensor predicted = torch::randn({3, 50, 3}), target = torch::randn({3, 70, 3});
   const torch::Tensor weights = 1 + 2 * (torch::rand({3, 70}) > 0.5).to(torch::kFloat);
-  const double loss = weighted_chamfer(predicted, target, weights, closest_points(predicted, target)).item<double>();
-  EXPECT_NEAR(loss, brute_chamfer(predicted, target, weights), 1e-5);
+  const torch::Tensor loss = weighted_chamfer(predicted, target, weights, closest_points(predicted, target));
+  ASSERT_EQ(loss.sizes(), (torch::IntArrayRef{3}));
+  for (int b = 0; b < 3; ++b) {
+    const double expected = brute_chamfer(predicted.narrow(0, b, 1), target.narrow(0, b, 1), weights.narrow(0, b, 1));
+    EXPECT_NEAR(loss[b].item<double>(), expected, 1e-5);
+  }
 }
 
 TEST(Losses, ChamferOfAShiftedPointPair) {
@@ -73,29 +77,94 @@ TEST(Losses, ChamferGradientAgreesWithDifferences) {
 TEST(Losses, PatchChamferIsTheMeanOverPatches) {
   torch::manual_seed(3);
   const torch::Tensor predicted = torch::randn({2, 3, 5, 3}), target = torch::randn({2, 3, 5, 3});
-  double sum = 0;
+  const torch::Tensor loss = patch_chamfer(predicted, target);
   for (int b = 0; b < 2; ++b) {
+    double sum = 0;
     for (int p = 0; p < 3; ++p)
       sum += brute_chamfer(predicted[b][p].unsqueeze(0), target[b][p].unsqueeze(0), torch::ones({1, 5}));
+    EXPECT_NEAR(loss[b].item<double>(), sum / 3, 1e-5);
   }
-  EXPECT_NEAR(patch_chamfer(predicted, target).item<double>(), sum / 6, 1e-5);
 }
 
-TEST(Losses, PerfectPredictionLeavesOnlyTheRoundingOfCoincidence) {
-  torch::manual_seed(4);
+/// A batch of two: the first sample with known correspondence, the second without.
+struct Truth {
   TargetBatch target;
-  target.points = torch::randn({2, 40, 3});
-  target.normals =
-      torch::nn::functional::normalize(torch::randn({2, 40, 3}), torch::nn::functional::NormalizeFuncOptions().dim(-1));
-  target.root = torch::ones({2, 40});
-  Prediction prediction;
-  prediction.coarse = target.points;
-  prediction.fine = target.points;
-  prediction.normals = target.normals;
-  const LossTerms terms = training_loss(prediction, target, TrainingOptions());
-  EXPECT_LT(terms.total.item<double>(), 5e-4);
-  prediction.normals = -target.normals;
-  EXPECT_NEAR(training_loss(prediction, target, TrainingOptions()).normal.item<double>(), 2, 1e-5);
+  Prediction perfect;
+
+  Truth() {
+    torch::manual_seed(4);
+    target.points = torch::randn({2, 40, 3});
+    const torch::Tensor directions = torch::randn({2, 40, 3});
+    target.normals = directions / directions.norm(2, -1, true);
+    target.root = (torch::arange(40) < 20).to(torch::kFloat).expand({2, 40}).contiguous();
+    target.is_matched = torch::tensor({1.0F, 0.0F});
+    target.matched = target.points.clone();
+    target.matched_normals = target.normals.clone();
+    target.matched_root = target.root.clone();
+    perfect.fine = target.points.clone();
+    perfect.normals = target.normals.clone();
+    // queries of two points each for the first sample, points of the target for the second
+    perfect.coarse = target.points.view({2, 20, 2, 3}).mean(2);
+    perfect.coarse[1].copy_(target.points[1].narrow(0, 0, 20));
+  }
+
+  LossTerms loss(const Prediction& prediction) const { return training_loss(prediction, target, TrainingOptions()); }
+};
+
+TEST(Losses, PerfectPredictionCostsNothing) {
+  const Truth truth;
+  const LossTerms terms = truth.loss(truth.perfect);
+  EXPECT_LT(terms.match.item<double>(), 2e-4);
+  EXPECT_LT(terms.chamfer.item<double>(), 2e-4);
+  EXPECT_LT(terms.normal.item<double>(), 1e-5);
+  Prediction inside_out = truth.perfect;
+  inside_out.normals = -truth.perfect.normals;
+  EXPECT_NEAR(truth.loss(inside_out).normal.item<double>(), 2, 1e-5);
+}
+
+TEST(Losses, OrderMattersOnlyWhereItIsKnown) {
+  const Truth truth;
+  for (const int sample : {0, 1}) {
+    Prediction swapped = truth.perfect;
+    swapped.fine = truth.perfect.fine.clone();
+    swapped.normals = truth.perfect.normals.clone();
+    swapped.fine[sample].copy_(truth.perfect.fine[sample].flip(0));
+    swapped.normals[sample].copy_(truth.perfect.normals[sample].flip(0));
+    const LossTerms terms = truth.loss(swapped);
+    EXPECT_LT(terms.chamfer.item<double>(), 2e-4);
+    if (sample == 0) {
+      EXPECT_GT(terms.match.item<double>(), 0.5);
+      EXPECT_GT(terms.normal.item<double>(), 0.1);
+    } else {
+      EXPECT_LT(terms.match.item<double>(), 2e-4);
+      EXPECT_LT(terms.normal.item<double>(), 1e-5);
+    }
+  }
+}
+
+TEST(Losses, MatchedRootPointsWeighThreefold) {
+  const Truth truth;
+  const auto moved = [&](int point) {
+    Prediction prediction = truth.perfect;
+    prediction.fine = truth.perfect.fine.clone();
+    prediction.fine[0][point][0] += 1;
+    return truth.loss(prediction).match.item<double>();
+  };
+  // 20 points of weight 3 and 20 of weight 1
+  EXPECT_NEAR(moved(5), 3.0 / 80, 2e-4);
+  EXPECT_NEAR(moved(30), 1.0 / 80, 2e-4);
+}
+
+TEST(Losses, DenoisingComparesInOrderWhereItIsKnown) {
+  Truth truth;
+  truth.target.denoise_target = torch::randn({2, 3, 4, 3});
+  Prediction prediction = truth.perfect;
+  prediction.denoised = truth.target.denoise_target.clone();
+  EXPECT_LT(truth.loss(prediction).denoise.item<double>(), 2e-4);
+  prediction.denoised[1].copy_(truth.target.denoise_target[1].flip(1));
+  EXPECT_LT(truth.loss(prediction).denoise.item<double>(), 2e-4);
+  prediction.denoised[0].copy_(truth.target.denoise_target[0].flip(1));
+  EXPECT_GT(truth.loss(prediction).denoise.item<double>(), 0.1);
 }
 
 TEST(Losses, GatherRows) {
