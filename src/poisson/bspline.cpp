@@ -5,7 +5,6 @@
 // line, is the centred B-spline of degree 2p + 1 at their shift; derivatives of the factors become differences.
 #include "poisson/bspline.hpp"
 
-
 namespace rhizodont {
 namespace {
 
