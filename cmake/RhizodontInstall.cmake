@@ -7,17 +7,17 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 get_property(rooms GLOBAL PROPERTY RHIZODONT_ROOMS)
-file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/rhizodont_library.cpp "")
-add_library(rhizodont_library SHARED ${CMAKE_CURRENT_BINARY_DIR}/rhizodont_library.cpp)
+set(room_objects "")
+foreach(room IN LISTS rooms)
+  list(APPEND room_objects $<TARGET_OBJECTS:${room}>)
+endforeach()
+add_library(rhizodont_library SHARED ${room_objects})
 set_target_properties(rhizodont_library PROPERTIES
   OUTPUT_NAME rhizodont EXPORT_NAME rhizodont
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 target_link_libraries(rhizodont_library
   PUBLIC Eigen3::Eigen
   PRIVATE ${rooms})
-# All of every room, whether or not something in this library refers to it.
-list(JOIN rooms "," joined_rooms)
-set_property(TARGET rhizodont_library PROPERTY LINK_LIBRARY_OVERRIDE "WHOLE_ARCHIVE,${joined_rooms}")
 target_include_directories(rhizodont_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(rhizodont_library INTERFACE cxx_std_20)
 # The folder of the BLAS that the networks need, see src/learning/CMakeLists.txt.

@@ -10,6 +10,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -65,8 +66,9 @@ struct CompletionRecord {
   int crown_triangles_direct = 0;    ///< given by the dual of the restricted Voronoi diagram
   int crown_triangles_restored = 0;  ///< brought back by the restore step
   int transition_vertices = 0;
-  QualityFigures new_triangles;  ///< over the triangles that are not the crown's (paper, 4.3)
-  CheckReport promises;          ///< evidence for promises 1 and 2
+  QualityFigures new_triangles;              ///< over the triangles that are not the crown's (paper, 4.3)
+  CheckReport promises;                      ///< evidence for promises 1 and 2
+  std::map<std::string, std::string> model;  ///< what the network's weights say of themselves: date, samples, seed
   std::vector<StageRecord> stages;
   std::vector<std::string> warnings;
 };

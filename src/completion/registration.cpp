@@ -216,7 +216,8 @@ Registered register_cloud(const Cloud& crown, const Cloud& mean, const std::vect
   }
   std::sort(starts.begin(), starts.end());
   std::vector<Eigen::Matrix3d> chosen;
-  for (const auto& [distance, r] : starts) {
+  for (const auto& start : starts) {
+    const std::size_t r = start.second;
     // Starts next to one already taken would only find the same place.
     const bool is_new = std::none_of(chosen.begin(), chosen.end(), [&](const Eigen::Matrix3d& other) {
       return Eigen::AngleAxisd(Eigen::Matrix3d(other.transpose() * rotations[r])).angle() < 0.4;

@@ -22,9 +22,8 @@ struct Separation {
 };
 
 /// Separates the guiding surface into crown and root (paper, 3.6). A vertex is root if it is farther than epsilon from
-/// the crown, or nearer but beyond the crown's border on its root side. "On its root side" is decided by the closest
-/// point of the crown: beyond the border exactly if that point lies on the border, and there below it along the growth
-/// axis or farther than the clearance. Only the part connected to the vertex lowest along the growth axis is kept.
+/// the crown, or nearer but beyond the crown's border by more than the clearance: the closest point of the crown then
+/// lies on its border. Only the part connected to the root vertex that is lowest along the growth axis is kept.
 ///
 /// `crown` is open with `growth_axis` a unit vector from root to crown. Throws InputError for a closed crown and
 /// NoResultError if no root is left.

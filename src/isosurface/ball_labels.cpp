@@ -66,11 +66,11 @@ class Region {
   /// Takes vertices of the ball that `may` go away, shallowest first, while it stays a ball.
   void carve(std::vector<char>& ball, const std::vector<char>& may) const;
 
-  std::size_t size() const { return vertices_.size(); }
-  std::vector<LatticeVertex> vertices_;
-  std::vector<double> depth_;   // field - iso
-  std::vector<char> solid_;     // inside, hollows filled and other parts left out
-  std::vector<char> original_;  // inside by the field
+  std::size_t size() const { return vertices.size(); }
+  std::vector<LatticeVertex> vertices;
+  std::vector<double> depth;   // field - iso
+  std::vector<char> solid;     // inside, hollows filled and other parts left out
+  std::vector<char> original;  // inside by the field
 
  private:
   std::uint32_t mask_of(std::size_t v, const std::vector<char>& inside) const {
@@ -100,23 +100,23 @@ Region::Region(const ScalarField& field, double iso, const CutCells& cells, cons
   box.min().array() -= 2.0 * e;
   box.max().array() += 2.0 * e;
   collect(box, kept.front(), tiling);
-  depth_.resize(size());
-  original_.resize(size());
+  depth.resize(size());
+  original.resize(size());
   tbb::parallel_for(std::size_t{0}, size(), [&](std::size_t v) {
-    depth_[v] = field(tiling.position(vertices_[v])).value - iso;
-    original_[v] = depth_[v] > 0.0 ? 1 : 0;
+    depth[v] = field(tiling.position(vertices[v])).value - iso;
+    original[v] = depth[v] > 0.0 ? 1 : 0;
   });
   IndexMap numbers(size());
   for (std::size_t v = 0; v < size(); ++v)
-    numbers.insert(GoldbergTiling::key(vertices_[v]), static_cast<std::int32_t>(v));
+    numbers.insert(GoldbergTiling::key(vertices[v]), static_cast<std::int32_t>(v));
   std::vector<std::size_t> starts, rim;
   for (const LatticeVertex& vertex : kept)
     starts.push_back(static_cast<std::size_t>(numbers.find(GoldbergTiling::key(vertex))));
-  solid_ = reachable(starts, original_, 1);
+  solid = reachable(starts, original, 1);
   for (std::size_t v = 0; v < size(); ++v)
-    if (!solid_[v] && std::ranges::count(neighbours_[v], -1) > 0) rim.push_back(v);
-  const std::vector<char> open = reachable(rim, solid_, 0);
-  for (std::size_t v = 0; v < size(); ++v) solid_[v] = open[v] ? 0 : 1;
+    if (!solid[v] && std::ranges::count(neighbours_[v], -1) > 0) rim.push_back(v);
+  const std::vector<char> open = reachable(rim, solid, 0);
+  for (std::size_t v = 0; v < size(); ++v) solid[v] = open[v] ? 0 : 1;
 }
 
 void Region::collect(const Eigen::AlignedBox3d& box, const LatticeVertex& start, const GoldbergTiling& tiling) {
@@ -124,13 +124,13 @@ void Region::collect(const Eigen::AlignedBox3d& box, const LatticeVertex& start,
   const auto number = [&](const LatticeVertex& vertex) {
     if (!box.contains(tiling.position(vertex))) return -1;
     const auto [index, is_new] = numbers.insert(GoldbergTiling::key(vertex), static_cast<std::int32_t>(size()));
-    if (is_new) vertices_.push_back(vertex);
+    if (is_new) vertices.push_back(vertex);
     return index;
   };
   number(start);
   for (std::size_t v = 0; v < size(); ++v) {
     std::array<std::int32_t, 14> around{};
-    for (std::size_t n = 0; n < 14; ++n) around[n] = number(sum(vertices_[v], lattice_neighbours()[n]));
+    for (std::size_t n = 0; n < 14; ++n) around[n] = number(sum(vertices[v], lattice_neighbours()[n]));
     neighbours_.push_back(around);
   }
 }
@@ -155,14 +155,14 @@ std::vector<char> Region::grow(const std::vector<char>& may) const {
   std::priority_queue<Candidate> queue;
   std::size_t deepest = size();
   for (std::size_t v = 0; v < size(); ++v)
-    if (may[v] && (deepest == size() || depth_[v] > depth_[deepest])) deepest = v;
+    if (may[v] && (deepest == size() || depth[v] > depth[deepest])) deepest = v;
   std::vector<char> ball(size(), 0);
   if (deepest == size()) return ball;
   const auto add = [&](std::size_t v) {
     ball[v] = 1;
     for (const std::int32_t n : neighbours_[v])
       if (n >= 0 && may[static_cast<std::size_t>(n)] && !ball[static_cast<std::size_t>(n)])
-        queue.emplace(depth_[static_cast<std::size_t>(n)], -n);
+        queue.emplace(depth[static_cast<std::size_t>(n)], -n);
   };
   add(deepest);
   while (!queue.empty()) {
@@ -177,7 +177,7 @@ void Region::carve(std::vector<char>& ball, const std::vector<char>& may) const 
   using Candidate = std::pair<double, std::int64_t>;  // minus depth, minus index
   std::priority_queue<Candidate> queue;
   for (std::size_t v = 0; v < size(); ++v)
-    if (ball[v] && may[v]) queue.emplace(-depth_[v], -static_cast<std::int64_t>(v));
+    if (ball[v] && may[v]) queue.emplace(-depth[v], -static_cast<std::int64_t>(v));
   while (!queue.empty()) {
     const auto v = static_cast<std::size_t>(-queue.top().second);
     queue.pop();
@@ -185,7 +185,7 @@ void Region::carve(std::vector<char>& ball, const std::vector<char>& may) const 
     ball[v] = 0;
     for (const std::int32_t n : neighbours_[v])
       if (n >= 0 && ball[static_cast<std::size_t>(n)] && may[static_cast<std::size_t>(n)])
-        queue.emplace(-depth_[static_cast<std::size_t>(n)], -n);
+        queue.emplace(-depth[static_cast<std::size_t>(n)], -n);
   }
 }
 
@@ -217,24 +217,24 @@ bool is_simple(std::uint32_t inside_neighbours) {
 LabelChanges changes_to_ball(const ScalarField& field, double iso, const CutCells& cells, const GoldbergTiling& tiling,
                              double e) {
   const Region region(field, iso, cells, tiling, e);
-  const std::vector<char> bridges_cut = region.grow(region.solid_);
+  const std::vector<char> bridges_cut = region.grow(region.solid);
   std::vector<char> tunnels_filled = region.grow(std::vector<char>(region.size(), 1));
   std::vector<char> outside(region.size());
-  std::ranges::transform(region.solid_, outside.begin(), [](char solid) { return static_cast<char>(1 - solid); });
+  std::ranges::transform(region.solid, outside.begin(), [](char solid) { return static_cast<char>(1 - solid); });
   region.carve(tunnels_filled, outside);
 
   const auto cost = [&](const std::vector<char>& ball) {
     double total = 0.0;
     for (std::size_t v = 0; v < region.size(); ++v)
-      if (ball[v] != region.solid_[v]) total += std::abs(region.depth_[v]);
+      if (ball[v] != region.solid[v]) total += std::abs(region.depth[v]);
     return total;
   };
   LabelChanges changes;
   changes.cut = cost(bridges_cut) <= cost(tunnels_filled);
   const std::vector<char>& ball = changes.cut ? bridges_cut : tunnels_filled;
   for (std::size_t v = 0; v < region.size(); ++v) {
-    if (ball[v] != region.solid_[v]) ++changes.count;
-    if (ball[v] != region.original_[v]) changes.inside.insert(GoldbergTiling::key(region.vertices_[v]), ball[v]);
+    if (ball[v] != region.solid[v]) ++changes.count;
+    if (ball[v] != region.original[v]) changes.inside.insert(GoldbergTiling::key(region.vertices[v]), ball[v]);
   }
   return changes;
 }

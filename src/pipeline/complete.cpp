@@ -176,6 +176,7 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   clock.begin("frame");
   const CrownFrame frame = find_frame(crown.mesh, models.atlas, options, record);
   clock.begin("completion network");
+  record.model = models.network.metadata();
   const OrientedPoints predicted = complete_points(crown.mesh, record.fdi, frame.frame, models.network);
   clock.begin("orientation");
   const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, predicted);

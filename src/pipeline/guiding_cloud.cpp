@@ -3,7 +3,8 @@
 
 // "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", section 3.5: additional points are
 //   sampled from the crown, so that the guiding surface runs close to it.
-// M. Alexa et al., "Computing and rendering point set surfaces", 2003: moving points to the plane of their neighbours.
+// M. Alexa et al., "Computing and rendering point set surfaces", 2003: moving points to a surface fitted to their
+//   neighbours.
 
 #include "pipeline/guiding_cloud.hpp"
 
@@ -15,10 +16,13 @@
 #include "poisson/orientation.hpp"
 #include "rhizodont/error.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace rhizodont {
 namespace {
@@ -80,30 +84,49 @@ void correct(std::vector<Point>& points, const CrownResiduals& residuals, double
   }
 }
 
-/// Moves each point to the plane of its neighbours on the same sheet; takes the noise out of predicted points.
+/// A point and normal on the quadric that fits the neighbours on the same sheet, straight above or below `centre`.
+/// A plane in its place would pull round roots in.
+std::pair<Point, Eigen::Vector3d> on_local_quadric(const OrientedPoints& cloud, std::size_t centre,
+                                                   const std::vector<NearVertex>& near) {
+  using Row = Eigen::Matrix<double, 6, 1>;
+  const Point& origin = cloud.points[centre];
+  const Eigen::Vector3d normal = cloud.normals[centre];
+  const Eigen::Vector3d u = normal.unitOrthogonal();
+  const Eigen::Vector3d v = normal.cross(u);
+  const double scale = std::sqrt(near.back().squared_distance) + 1e-12;
+  Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+  Row right = Row::Zero();
+  int used = 0;
+  for (const NearVertex& n : near) {
+    const auto i = static_cast<std::size_t>(n.index);
+    const double agreement = normal.dot(cloud.normals[i]);
+    if (agreement <= 0.2) continue;
+    const Eigen::Vector3d d = (cloud.points[i] - origin) / scale;
+    const double x = d.dot(u);
+    const double y = d.dot(v);
+    const Row row = (Row() << 1, x, y, x * x, x * y, y * y).finished();
+    const double weight = agreement * std::exp(-2 * d.squaredNorm());
+    matrix += weight * row * row.transpose();
+    right += weight * d.dot(normal) * row;
+    ++used;
+  }
+  if (used < 9) return {origin, normal};
+  // Keeps the quadric from bending more than the points ask for where they are few.
+  matrix.diagonal() += 1e-3 * matrix(0, 0) * (Row() << 0, 0.1, 0.1, 1, 1, 1).finished();
+  const Row fit = matrix.ldlt().solve(right);
+  if (!fit.allFinite() || std::abs(fit[0]) > 0.6) return {origin, normal};
+  return {origin + scale * fit[0] * normal, (normal - fit[1] * u - fit[2] * v).normalized()};
+}
+
+/// Takes the noise out of predicted points. They move along their normals only: sliding would thin out the root's tip.
 void smooth(OrientedPoints& cloud, int neighbours, int rounds) {
   for (int round = 0; round < rounds; ++round) {
     const NearestVertexIndex index(cloud.points);
-    std::vector<Point> moved = cloud.points;
-    for (std::size_t i = 0; i < moved.size(); ++i) {
-      const auto near = index.nearest(cloud.points[i], static_cast<std::size_t>(neighbours));
-      const double scale = near.back().squared_distance / 2 + 1e-12;
-      Point mean = Point::Zero();
-      double weights = 0;
-      for (const NearVertex& n : near) {
-        const auto j = static_cast<std::size_t>(n.index);
-        const double agreement = cloud.normals[i].dot(cloud.normals[j]);
-        if (agreement <= 0.2) continue;
-        const double w = agreement * std::exp(-n.squared_distance / scale);
-        mean += w * cloud.points[j];
-        weights += w;
-      }
-      if (!(weights > 0)) continue;
-      mean /= weights;
-      // Along the normal only: sliding would thin out the tip of the root.
-      moved[i] += cloud.normals[i] * cloud.normals[i].dot(mean - cloud.points[i]);
-    }
-    cloud.points = std::move(moved);
+    OrientedPoints moved = cloud;
+    for (std::size_t i = 0; i < moved.points.size(); ++i)
+      std::tie(moved.points[i], moved.normals[i]) =
+          on_local_quadric(cloud, i, index.nearest(cloud.points[i], static_cast<std::size_t>(neighbours)));
+    cloud = std::move(moved);
   }
 }
 

@@ -13,8 +13,8 @@ struct GuidingCloudOptions {
   double crown_confidence = 4;    ///< > 0: how much more than predicted points the scanned ones count
   double gap = 0.25;              ///< mm, >= 0: predicted points nearer to the crown are left out
   double correction_reach = 6;    ///< mm, > 0: how far from the crown the prediction is corrected to meet it
-  int smoothing_neighbours = 24;  ///< >= 4: neighbours whose common plane a predicted point is moved to
-  int smoothing_rounds = 2;       ///< >= 0
+  int smoothing_neighbours = 40;  ///< >= 12: neighbours to which a quadric is fitted at each predicted point
+  int smoothing_rounds = 3;       ///< >= 0: how often predicted points are moved to that quadric
 };
 
 /// The oriented points that the guiding surface is made of.

@@ -72,6 +72,7 @@ std::string completion_report(const CompletedTooth& tooth, const CompleteOptions
   const Json json{
       {"report_version", report_version},
       {"program", {{"name", "rhizodont"}, {"version", RHIZODONT_VERSION}}},
+      {"model", record.model},
       {"notice", "A predicted root is not the patient's anatomy. For research and visualisation only."},
       {"input", {{"file", input_file.filename().string()}, {"sha256", input_bytes_sha256}}},
       {"options",

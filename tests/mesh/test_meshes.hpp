@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "mesh/adjacency.hpp"
 #include "rhizodont/mesh.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -54,6 +56,17 @@ inline TriangleMesh sphere(int levels, double radius = 1) {
   }
   for (Point& p : mesh.vertices) p *= radius;
   return mesh;
+}
+
+/// The triangles of `sphere` that lie in z >= 0: a dome, open below, with one border loop on the equator.
+inline TriangleMesh dome(int levels, double radius = 1) {
+  const TriangleMesh ball = sphere(levels, radius);
+  std::vector<bool> above;
+  for (const auto& [a, b, c] : ball.triangles) {
+    const auto z = [&](int v) { return ball.vertices[static_cast<std::size_t>(v)].z(); };
+    above.push_back(std::min({z(a), z(b), z(c)}) > -1e-9);
+  }
+  return submesh(ball, above).mesh;
 }
 
 /// Torus about the z axis, n x m quads, outward.

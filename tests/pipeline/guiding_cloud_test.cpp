@@ -3,7 +3,6 @@
 
 #include "pipeline/guiding_cloud.hpp"
 
-#include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
 #include "mesh/test_meshes.hpp"
@@ -18,16 +17,7 @@ namespace {
 
 constexpr double radius = 5;
 
-TriangleMesh upper_half() {
-  const TriangleMesh ball = test::sphere(4, radius);
-  std::vector<bool> above;
-  for (const Triangle& t : ball.triangles) {
-    bool all = true;
-    for (const int v : t) all = all && ball.vertices[static_cast<std::size_t>(v)].z() > -1e-9;
-    above.push_back(all);
-  }
-  return submesh(ball, above).mesh;
-}
+TriangleMesh upper_half() { return test::dome(4, radius); }
 
 /// Points of the whole ball, moved by `shift` and disturbed.
 OrientedPoints prediction(const Eigen::Vector3d& shift, double noise) {

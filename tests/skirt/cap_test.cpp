@@ -18,8 +18,8 @@ namespace {
 
 constexpr double base = -1;  // mm, height of the flat base
 
-/// A dome on a flat base: a ball whose lower part is pressed onto a plane.
-TriangleMesh dome() {
+/// A dome closed by a flat base: a ball whose lower part is pressed onto a plane.
+TriangleMesh flat_dome() {
   TriangleMesh mesh = test::sphere(4, 5);
   for (Point& p : mesh.vertices) p.z() = std::max(p.z(), base);
   return mesh;
@@ -32,7 +32,7 @@ bool lies_on_base(const TriangleMesh& mesh, const Triangle& t) {
 }
 
 TEST(Cap, IsTheFlatBaseOfADome) {
-  const TriangleMesh mesh = dome();
+  const TriangleMesh mesh = flat_dome();
   const Cap cap = find_cap(mesh, Eigen::Vector3d::UnitZ());
   require_cap(cap);
   double wrong = 0;
@@ -45,7 +45,7 @@ TEST(Cap, IsTheFlatBaseOfADome) {
 }
 
 TEST(Cap, IsFoundWithAnAxisThatIsOffByTwentyDegreesAndInAnyPose) {
-  const TriangleMesh upright = dome();
+  const TriangleMesh upright = flat_dome();
   const Cap expected = find_cap(upright, Eigen::Vector3d::UnitZ());
   const Eigen::AngleAxisd off(20 * M_PI / 180, Eigen::Vector3d::UnitX());
   EXPECT_EQ(find_cap(upright, off * Eigen::Vector3d::UnitZ()).is_cap, expected.is_cap);
