@@ -56,7 +56,7 @@ CompletedPoints CompletionNetwork::complete(std::span<const Eigen::Vector3f> cro
   const CrownBatch batch = make_crown_batch(impl_->shape, {xyz}, {type});
   if ((batch.points[0][0] - batch.points[0][impl_->shape.centres_2 - 1]).abs().max().item<float>() == 0)
     throw InputError("The crown's points coincide.");
-  const Prediction prediction = impl_->network->forward(batch, {}, {}, layers::Precision::single);
+  const Prediction prediction = impl_->network->forward(batch, {}, layers::Precision::single);
   if (!torch::isfinite(prediction.fine).all().item<bool>() || !torch::isfinite(prediction.normals).all().item<bool>())
     throw NoResultError("The completion network came to no result for this crown.");
 

@@ -12,8 +12,6 @@
 namespace rhizodont {
 namespace {
 
-using layers::gather_rows;
-
 std::span<const float> row(const torch::Tensor& points, std::int64_t b) {
   const std::int64_t size = points.size(1) * points.size(2);
   return {points.data_ptr<float>() + b * size, static_cast<std::size_t>(size)};
@@ -43,6 +41,12 @@ ClosestPoints closest_points(const torch::Tensor& first, const torch::Tensor& se
     }
   });
   return closest;
+}
+
+torch::Tensor gather_rows(const torch::Tensor& points, const torch::Tensor& indices) {
+  const std::int64_t batch = points.size(0), count = points.size(1), channels = points.size(2);
+  const torch::Tensor flat = (indices + torch::arange(batch, torch::kLong).unsqueeze(1) * count).flatten();
+  return points.reshape({batch * count, channels}).index_select(0, flat).view({batch, indices.size(1), channels});
 }
 
 torch::Tensor safe_length(const torch::Tensor& vectors) { return torch::sqrt(vectors.square().sum(-1) + 1e-8); }

@@ -19,6 +19,9 @@ struct ClosestPoints {
 /// Exact; no gradient.
 ClosestPoints closest_points(const torch::Tensor& first, const torch::Tensor& second);
 
+/// Rows of `points` (B x N x C) at `indices` (int64, B x Q): B x Q x C, differentiable in `points`.
+torch::Tensor gather_rows(const torch::Tensor& points, const torch::Tensor& indices);
+
 /// Length of the last axis' vectors, sqrt(|v|^2 + 1e-8): finite gradient where points coincide.
 torch::Tensor safe_length(const torch::Tensor& vectors);
 
@@ -37,7 +40,6 @@ struct TargetBatch {
   torch::Tensor normals;          ///< float, B x M x 3, unit length
   torch::Tensor root;             ///< float, B x M: 1 below the crown, 0 on it
   torch::Tensor seeds;            ///< float, B x n x 3: disturbed target points; undefined: no denoising
-  torch::Tensor seed_patches;     ///< int64, B x n: the patch whose points a seed is to become, -1 where unmatched
   torch::Tensor denoise_target;   ///< float, B x n x patch_points x 3; in the patch's own order where matched
   torch::Tensor is_matched;       ///< float, B: 1 where the next three are known, 0 where they are zero
   torch::Tensor matched;          ///< float, B x (queries patch_points) x 3: where each predicted point belongs

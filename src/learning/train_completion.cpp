@@ -121,10 +121,8 @@ Trainer::Trainer(const SampleProvider& provider, const TrainingOptions& options)
   tensors_ = trained_tensors(*network_);
   if (options.resume && load_checkpoint()) return;
   QueryLayout layout = initial_layout(provider, options.shape);
-  for (int type = 0; type <= unknown_type; ++type) {
-    const auto& patches = layout.patches[static_cast<std::size_t>(type)];
-    network_->set_patches(type, patches.points, patches.normals);
-  }
+  for (int type = 0; type <= unknown_type; ++type)
+    network_->set_anchors(type, layout.anchors[static_cast<std::size_t>(type)]);
   layouts_ = std::move(layout.points);
   for (TrainedTensor& tensor : tensors_) tensor.average.copy_(tensor.value);
 }
@@ -138,8 +136,7 @@ Share Trainer::work(std::uint64_t first) const {
   const TensorThreads one_thread(1);  // counts per thread: this may be a fresh one
   const TrainingBatch batch =
       make_training_batch(provider_, layouts_, first, options_.batch / options_.threads, options_, true);
-  const Prediction prediction =
-      network_->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, precision_);
+  const Prediction prediction = network_->forward(batch.crowns, batch.target.seeds, precision_);
   const LossTerms terms = training_loss(prediction, batch.target, options_);
   Share share;
   share.figures = to_figures(terms);
@@ -212,7 +209,7 @@ void Trainer::validate() {
   for (int i = 0; i < batches; ++i) {
     const auto first = first_validation_sample + static_cast<std::uint64_t>(i * batch);
     const TrainingBatch samples = make_training_batch(provider_, layouts_, first, batch, options_, false);
-    const Prediction prediction = network_->forward(samples.crowns, {}, {}, precision_);
+    const Prediction prediction = network_->forward(samples.crowns, {}, precision_);
     const TargetBatch& target = samples.target;
     const ClosestPoints closest = closest_points(prediction.fine, target.points);
     whole +=
@@ -221,7 +218,7 @@ void Trainer::validate() {
     const torch::Tensor deepest = std::get<0>(prediction.fine.select(2, 2).min(1));
     length += (deepest - std::get<0>(target.points.select(2, 2).min(1))).abs().mean().item<double>();
     const torch::Tensor cosine =
-        (prediction.normals * layers::gather_rows(target.normals, closest.first_to_second)).sum(-1).clamp(-1, 1);
+        (prediction.normals * gather_rows(target.normals, closest.first_to_second)).sum(-1).clamp(-1, 1);
     normal += torch::acos(cosine).mean().item<double>() * 180 / std::numbers::pi;
   }
   for (TrainedTensor& tensor : tensors_) {
@@ -377,7 +374,6 @@ std::map<std::string, std::string> export_completion(const std::filesystem::path
   } else {
     throw InputError("The folder " + folder.string() + " has no weights to export.");
   }
-  read_shape(file.metadata);  // weights of an older network must not get out
   for (const auto& [key, text] : notes) file.metadata[key] = text;
   write_safetensors(path, file);
   return file.metadata;

@@ -171,7 +171,7 @@ TEST(Losses, GatherRows) {
   const torch::Tensor points = torch::arange(2 * 3 * 2, torch::kFloat).view({2, 3, 2});
   const torch::Tensor indices = torch::tensor({{2L, 0L}, {1L, 1L}});
   const torch::Tensor expected = torch::tensor({{{4.0F, 5.0F}, {0.0F, 1.0F}}, {{8.0F, 9.0F}, {8.0F, 9.0F}}});
-  EXPECT_TRUE(torch::equal(layers::gather_rows(points, indices), expected));
+  EXPECT_TRUE(torch::equal(gather_rows(points, indices), expected));
 }
 
 /// One parameter with the optimiser's state.
