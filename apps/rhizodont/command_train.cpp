@@ -120,7 +120,7 @@ The generator draws on these sources, and training on nothing else:
   the statistical crown models of Chen et al., "Automatic 3D Teeth Reconstruction from Five Intra-oral Photos Using
   Parametric Teeth Model", 2023 (MIT).
 
-No real tooth was trained on. Two settings of the generator were chosen after the validation crowns' sizes and cuts had been
+No scan of a patient was trained on. Two settings of the generator were chosen after the validation crowns' sizes and cuts had been
 seen: the crowns' size above, and how far flat cuts lean (9 degrees). Their roots were used for nothing but evaluation.
 
 The weights are derived from these templates: keep the attribution when you pass them on.
