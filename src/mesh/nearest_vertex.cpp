@@ -13,8 +13,39 @@
 namespace rhizodont {
 namespace {
 
-// Gathers everything within a squared radius, the bound included (nanoflann's own radius set excludes it, and its set
-// of the k nearest keeps whichever of equally near points the tree meets first).
+bool nearer(const NearVertex& a, const NearVertex& b) {
+  return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance : a.index < b.index;
+}
+
+// The tree adds up box distances with rounding errors of its own, and passes over what is as far as the bound.
+double beyond(double squared_distance) { return squared_distance * (1 + 1e-12) + std::numeric_limits<double>::min(); }
+
+// Keeps the k nearest in order. (nanoflann's own set keeps whichever of equally near points the tree meets first.)
+class NearestSet {
+ public:
+  using DistanceType = double;
+  using IndexType = std::uint32_t;
+  explicit NearestSet(std::span<NearVertex> found) : found_(found) {}
+  std::size_t size() const { return size_; }
+  bool full() const { return size_ == found_.size(); }
+  bool addPoint(double squared_distance, std::uint32_t index) {
+    const NearVertex fresh{static_cast<int>(index), squared_distance};
+    if (full() && !nearer(fresh, found_[size_ - 1])) return true;
+    std::size_t at = full() ? size_ - 1 : size_++;
+    for (; at > 0 && nearer(fresh, found_[at - 1]); --at) found_[at] = found_[at - 1];
+    found_[at] = fresh;
+    return true;
+  }
+  double worstDist() const {
+    return full() ? beyond(found_[size_ - 1].squared_distance) : std::numeric_limits<double>::max();
+  }
+
+ private:
+  std::span<NearVertex> found_;
+  std::size_t size_ = 0;
+};
+
+// Gathers everything within a squared radius, the bound included (nanoflann's own radius set excludes it).
 class ClosedBall {
  public:
   using DistanceType = double;
@@ -26,17 +57,12 @@ class ClosedBall {
     if (squared_distance <= bound_) found_.push_back({static_cast<int>(index), squared_distance});
     return true;
   }
-  // A little more than the bound: the tree adds up box distances with rounding errors of its own.
-  double worstDist() const { return bound_ * (1 + 1e-12) + std::numeric_limits<double>::min(); }
+  double worstDist() const { return beyond(bound_); }
 
  private:
   double bound_;
   std::vector<NearVertex>& found_;
 };
-
-bool nearer(const NearVertex& a, const NearVertex& b) {
-  return a.squared_distance != b.squared_distance ? a.squared_distance < b.squared_distance : a.index < b.index;
-}
 
 }  // namespace
 
@@ -74,18 +100,23 @@ NearestVertexIndex& NearestVertexIndex::operator=(NearestVertexIndex&&) noexcept
 std::size_t NearestVertexIndex::size() const { return tree_->points.size(); }
 const std::vector<Point>& NearestVertexIndex::points() const { return tree_->points; }
 
-NearVertex NearestVertexIndex::nearest(const Point& query) const { return nearest(query, 1).front(); }
+NearVertex NearestVertexIndex::nearest(const Point& query) const {
+  NearVertex found;
+  nearest(query, {&found, 1});
+  return found;
+}
 
 std::vector<NearVertex> NearestVertexIndex::nearest(const Point& query, std::size_t k) const {
-  k = std::min(k, size());
-  if (k == 0) return {};
-  std::vector<std::uint32_t> indices(k);
-  std::vector<double> squared_distances(k);
-  tree_->index->knnSearch(query.data(), k, indices.data(), squared_distances.data());
-  // All points as near as the k-th, so that a tie is decided by index and not by the tree.
-  std::vector<NearVertex> found = tree_->ball(query, squared_distances.back());
-  found.resize(std::min(found.size(), k));
+  std::vector<NearVertex> found(std::min(k, size()));
+  nearest(query, found);
   return found;
+}
+
+std::size_t NearestVertexIndex::nearest(const Point& query, std::span<NearVertex> found) const {
+  if (found.empty()) return 0;
+  NearestSet set(found);
+  tree_->index->findNeighbors(set, query.data(), nanoflann::SearchParams(0, 0.0F, false));
+  return set.size();
 }
 
 std::vector<NearVertex> NearestVertexIndex::within(const Point& query, double radius) const {

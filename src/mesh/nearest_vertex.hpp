@@ -5,6 +5,7 @@
 #include "rhizodont/mesh.hpp"
 
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace rhizodont {
@@ -30,6 +31,8 @@ class NearestVertexIndex {
   NearVertex nearest(const Point& query) const;
   /// The k nearest, or all where there are fewer than k.
   std::vector<NearVertex> nearest(const Point& query, std::size_t k) const;
+  /// Fills `found` with as many of the nearest as it has room for; returns how many there are. Allocates nothing.
+  std::size_t nearest(const Point& query, std::span<NearVertex> found) const;
   /// All at most `radius` (mm) away.
   std::vector<NearVertex> within(const Point& query, double radius) const;
 

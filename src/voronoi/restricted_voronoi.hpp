@@ -10,7 +10,9 @@ namespace rhizodont {
 
 struct RestrictedVoronoiOptions {
   int neighbours = 24;        ///< nearest sites listed per site at first, >= 1; the lists grow where a cell needs more
-  bool cell_moments = false;  ///< also compute areas and centroids of the cells
+  bool cell_moments = false;  ///< also compute areas, masses and centroids of the cells
+  std::vector<double>
+      density;  ///< for masses and centroids: per vertex of the surface, >= 0, linear in between; empty: 1
 };
 
 /// The Voronoi diagram of sites restricted to a surface, seen through its dual.
@@ -20,7 +22,9 @@ struct RestrictedVoronoi {
   std::vector<Triangle> triangles;
   std::vector<bool> site_has_cell;   ///< per site: false if no part of the surface is nearest to it
   std::vector<double> cell_area;     ///< mm^2 per site; empty unless asked for
-  std::vector<Point> cell_centroid;  ///< per site, not on the surface in general; empty unless asked for
+  std::vector<double> cell_mass;     ///< integral of the density per site; empty unless asked for
+  std::vector<Point> cell_centroid;  ///< per site, weighted by the density, not on the surface in general; the site
+                                     ///< itself where there is no mass; empty unless asked for
 };
 
 /// The same triangle written with its lowest index first, as in `RestrictedVoronoi::triangles`.
@@ -33,7 +37,8 @@ Triangle lowest_first(Triangle triangle);
 /// on in parallel; the result does not depend on the number of threads. The dual is a closed manifold where each cell
 /// is a disc (closed-ball property, Edelsbrunner and Shah 1997); nothing else is promised.
 ///
-/// Throws InputError for no sites, no triangles, or non-finite coordinates (ids of the sites).
+/// Throws InputError for no sites, no triangles, or non-finite coordinates (ids of the sites); UsageError for options
+/// out of their ranges.
 /// Source: D.-M. Yan et al., "Isotropic remeshing with fast and exact computation of restricted Voronoi diagram", 2009;
 /// security radius: B. Levy and N. Bonneel 2013.
 RestrictedVoronoi restricted_voronoi(const std::vector<Point>& sites, const TriangleMesh& surface,
