@@ -13,9 +13,11 @@
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/sampling.hpp"
+#include "poisson/neighbours.hpp"
 #include "poisson/orientation.hpp"
 #include "rhizodont/error.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 
@@ -42,11 +44,14 @@ struct SortedPrediction {
 SortedPrediction sort_prediction(const TriangleMesh& crown, const OrientedPoints& predicted, double gap) {
   const CrownBorder border = find_crown_border(crown);
   const ClosestPointIndex index(crown);
+  std::vector<ClosestPoint> closest_points(predicted.points.size());
+  tbb::parallel_for(std::size_t{0}, closest_points.size(),
+                    [&](std::size_t i) { closest_points[i] = index.closest(predicted.points[i]); });
   SortedPrediction sorted;
   constexpr double believable = 1.5;  // mm; a predicted crown point farther off says nothing about its neighbours
   for (std::size_t i = 0; i < predicted.points.size(); ++i) {
     const Point& p = predicted.points[i];
-    const ClosestPoint closest = index.closest(p);
+    const ClosestPoint& closest = closest_points[i];
     if (lies_on_border(crown, border, closest)) {
       if (closest.distance > gap) {
         sorted.beyond.points.push_back(p);
@@ -84,21 +89,23 @@ void correct(std::vector<Point>& points, const CrownResiduals& residuals, double
   }
 }
 
-/// A point and normal on the quadric that fits the neighbours on the same sheet, straight above or below `centre`.
-/// A plane in its place would pull round roots in.
+/// A point and normal on the quadric that fits the point and its neighbours on the same sheet, straight above or below
+/// the point. A plane in its place would pull round roots in.
 std::pair<Point, Eigen::Vector3d> on_local_quadric(const OrientedPoints& cloud, std::size_t centre,
-                                                   const std::vector<NearVertex>& near) {
+                                                   std::span<const int> neighbours) {
   using Row = Eigen::Matrix<double, 6, 1>;
   const Point& origin = cloud.points[centre];
   const Eigen::Vector3d normal = cloud.normals[centre];
   const Eigen::Vector3d u = normal.unitOrthogonal();
   const Eigen::Vector3d v = normal.cross(u);
-  const double scale = std::sqrt(near.back().squared_distance) + 1e-12;
+  double scale = 1e-12;
+  for (const int n : neighbours) scale = std::max(scale, (cloud.points[static_cast<std::size_t>(n)] - origin).norm());
   Eigen::Matrix<double, 6, 6> matrix = Eigen::Matrix<double, 6, 6>::Zero();
+  matrix(0, 0) = 1.0;  // the point itself
   Row right = Row::Zero();
-  int used = 0;
-  for (const NearVertex& n : near) {
-    const auto i = static_cast<std::size_t>(n.index);
+  int used = 1;
+  for (const int n : neighbours) {
+    const auto i = static_cast<std::size_t>(n);
     const double agreement = normal.dot(cloud.normals[i]);
     if (agreement <= 0.2) continue;
     const Eigen::Vector3d d = (cloud.points[i] - origin) / scale;
@@ -120,12 +127,13 @@ std::pair<Point, Eigen::Vector3d> on_local_quadric(const OrientedPoints& cloud, 
 
 /// Takes the noise out of predicted points. They move along their normals only: sliding would thin out the root's tip.
 void smooth(OrientedPoints& cloud, int neighbours, int rounds) {
+  if (rounds == 0) return;
+  const Neighbours near = nearest_neighbours(cloud.points, static_cast<std::size_t>(neighbours) - 1);
   for (int round = 0; round < rounds; ++round) {
-    const NearestVertexIndex index(cloud.points);
     OrientedPoints moved = cloud;
-    for (std::size_t i = 0; i < moved.points.size(); ++i)
-      std::tie(moved.points[i], moved.normals[i]) =
-          on_local_quadric(cloud, i, index.nearest(cloud.points[i], static_cast<std::size_t>(neighbours)));
+    tbb::parallel_for(std::size_t{0}, moved.points.size(), [&](std::size_t i) {
+      std::tie(moved.points[i], moved.normals[i]) = on_local_quadric(cloud, i, near.of(i));
+    });
     cloud = std::move(moved);
   }
 }
@@ -146,15 +154,19 @@ GuidingCloud assemble_guiding_cloud(const TriangleMesh& crown, const OrientedPoi
       static_cast<std::size_t>(std::max(500.0, surface_area(crown) / (options.crown_spacing * options.crown_spacing)));
   const SurfaceSamples on_crown = sample_surface(crown, count, 1);
 
-  // Orientation looks at root and crown together, so that the root's normals follow on from the crown's.
-  std::vector<Point> points = on_crown.points;
-  std::vector<Eigen::Vector3d> hints = on_crown.normals;
+  // Orientation looks at root and crown together, so that the root's normals follow on from the crown's. Samples are
+  // independent of each other: the first ones cover the crown as evenly as all, and are as dense as the prediction.
+  const auto context = static_cast<std::ptrdiff_t>(
+      std::min(static_cast<double>(count),
+               std::max(200.0, surface_area(crown) / (options.orientation_spacing * options.orientation_spacing))));
+  std::vector<Point> points(on_crown.points.begin(), on_crown.points.begin() + context);
+  std::vector<Eigen::Vector3d> hints(on_crown.normals.begin(), on_crown.normals.begin() + context);
   points.insert(points.end(), sorted.beyond.points.begin(), sorted.beyond.points.end());
   hints.insert(hints.end(), sorted.beyond.normals.begin(), sorted.beyond.normals.end());
   const OrientedPoints oriented = orient_normals(points, hints);
   OrientedPoints root;
-  root.points.assign(oriented.points.begin() + static_cast<std::ptrdiff_t>(count), oriented.points.end());
-  root.normals.assign(oriented.normals.begin() + static_cast<std::ptrdiff_t>(count), oriented.normals.end());
+  root.points.assign(oriented.points.begin() + context, oriented.points.end());
+  root.normals.assign(oriented.normals.begin() + context, oriented.normals.end());
   smooth(root, options.smoothing_neighbours, options.smoothing_rounds);
 
   cloud.samples = {on_crown.points, on_crown.normals};

@@ -9,12 +9,13 @@
 namespace rhizodont {
 
 struct GuidingCloudOptions {
-  double crown_spacing = 0.15;    ///< mm, > 0: mean distance of the samples taken on the scanned crown
-  double crown_confidence = 4;    ///< > 0: how much more than predicted points the scanned ones count
-  double gap = 0.25;              ///< mm, >= 0: predicted points nearer to the crown are left out
-  double correction_reach = 6;    ///< mm, > 0: how far from the crown the prediction is corrected to meet it
-  int smoothing_neighbours = 40;  ///< >= 12: neighbours to which a quadric is fitted at each predicted point
-  int smoothing_rounds = 3;       ///< >= 0: how often predicted points are moved to that quadric
+  double crown_spacing = 0.15;       ///< mm, > 0: mean distance of the samples taken on the scanned crown
+  double orientation_spacing = 0.4;  ///< mm, > 0: of those of them that take part in orienting the prediction
+  double crown_confidence = 4;       ///< > 0: how much more than predicted points the scanned ones count
+  double gap = 0.25;                 ///< mm, >= 0: predicted points nearer to the crown are left out
+  double correction_reach = 6;       ///< mm, > 0: how far from the crown the prediction is corrected to meet it
+  int smoothing_neighbours = 40;     ///< >= 12: neighbours to which a quadric is fitted at each predicted point
+  int smoothing_rounds = 3;          ///< >= 0: how often predicted points are moved to that quadric
 };
 
 /// The oriented points that the guiding surface is made of.

@@ -12,7 +12,7 @@ namespace rhizodont {
 /// The nearest points of each point of a cloud, itself left out.
 struct Neighbours {
   std::size_t count = 0;          ///< per point
-  std::vector<int> indices;       ///< of point i: indices[i * count ..], nearest first, ties by index
+  std::vector<int> indices;       ///< of point i: indices[i * count ..], nearest first, equally near ones by index
   std::vector<double> distances;  ///< mm, likewise
 
   std::span<const int> of(std::size_t i) const { return std::span(indices).subspan(i * count, count); }

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "poisson/clouds.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "common/bench_teeth.hpp"
+#include "completion/complete_points.hpp"
+#include "pipeline/models.hpp"
+
+namespace rhizodont {
+
+std::vector<PredictedTooth> predict_validation_teeth(const std::filesystem::path& data_folder) {
+  const CompletionModels models = CompletionModels::load(default_models_folder());
+  const auto& content = models.content();
+  std::vector<PredictedTooth> teeth;
+  for (BenchTooth& tooth : load_validation_teeth(data_folder)) {
+    const auto type = static_cast<std::size_t>(tooth_type_of_fdi(tooth.fdi));
+    const CrownFrame frame = canonical_frame(tooth.crown, tooth.fdi, content.atlas.types[type]);
+    OrientedPoints predicted = complete_points(tooth.crown, tooth.fdi, frame.frame, content.network);
+    teeth.push_back({tooth.fdi, std::move(tooth.crown), std::move(tooth.tooth), std::move(predicted)});
+  }
+  return teeth;
+}
+
+double best_seconds(const std::function<void()>& work, int repeats) {
+  double best = std::numeric_limits<double>::max();
+  for (int i = 0; i < repeats; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  }
+  return best;
+}
+
+}  // namespace rhizodont
