@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// Whatever is given as a crown: a tooth that keeps the promises, or a reason why there is none.
+
+#include "common/hostile_crowns.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/test_meshes.hpp"
+#include "rhizodont/check.hpp"
+#include "rhizodont/complete.hpp"
+#include "rhizodont/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <exception>
+#include <filesystem>
+#include <set>
+
+namespace rhizodont {
+namespace {
+
+const std::filesystem::path source_folder = RHIZODONT_SOURCE_DIR;
+
+const CompletionModels& models() {
+  static const CompletionModels loaded = CompletionModels::load(source_folder / "models");
+  return loaded;
+}
+
+CompleteOptions coarse(int fdi) {
+  CompleteOptions options;
+  options.fdi = fdi;
+  options.e = 1;
+  return options;
+}
+
+/// Kept and dropped vertices are the whole crown; the promises hold against the crown as it was given.
+void expect_promises(const TriangleMesh& crown, const CompletedTooth& tooth, const CompleteOptions& options) {
+  CheckOptions exact;
+  exact.compare_as_float = false;
+  exact.least_kept_share = 1e-9;
+  const CheckReport report = check(crown, tooth.mesh, exact);
+  EXPECT_TRUE(report.holds()) << (report.failures.empty() ? "" : report.failures.front());
+  std::set<int> told(tooth.record.kept_vertices.begin(), tooth.record.kept_vertices.end());
+  for (const DroppedCrownVertex& d : tooth.record.dropped_vertices) EXPECT_TRUE(told.insert(d.vertex).second);
+  EXPECT_EQ(told.size(), crown.vertices.size());
+  // Numbers that are none are written as null; so is the open upper end of the last bin of deviations.
+  const std::string text = completion_report(tooth, options, "crown.ply", std::string(64, '0'));
+  EXPECT_EQ(text.find("null"), text.rfind("null"));
+}
+
+/// 0 for a tooth that keeps the promises, else the exit code of a typed error that tells a reason.
+int outcome(const TriangleMesh& crown, const CompleteOptions& options) {
+  try {
+    expect_promises(crown, complete_tooth(crown, models(), options), options);
+    return 0;
+  } catch (const Error& error) {
+    EXPECT_TRUE(error.code() == ErrorCode::unusable_input || error.code() == ErrorCode::no_result) << error.what();
+    EXPECT_GT(std::string(error.what()).size(), 10U);
+    return static_cast<int>(error.code());
+  } catch (const std::exception& error) {
+    ADD_FAILURE() << "not told as an error of ours: " << error.what();
+    return -1;
+  }
+}
+
+class HostileCrowns : public testing::TestWithParam<std::string> {};
+
+TEST_P(HostileCrowns, GiveAToothOrAReason) {
+  const TriangleMesh molar = test::coarsened_to(load_mesh(source_folder / "samples/crown_36.stl").mesh, 600);
+  const TriangleMesh canine = test::coarsened_to(load_mesh(source_folder / "samples/crown_23.ply").mesh, 300);
+  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+    SCOPED_TRACE(GetParam() + ", seed " + std::to_string(seed));
+    const bool is_molar = seed % 2 == 0;
+    outcome(test::hostile_crown(is_molar ? molar : canine, GetParam(), seed), coarse(is_molar ? 36 : 23));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, HostileCrowns, testing::ValuesIn(test::hostile_kinds()), [](const auto& kind) {
+  std::string name;
+  for (const char c : kind.param)
+    if (std::isalpha(static_cast<unsigned char>(c)) != 0) name += c;
+  return name;
+});
+
+TEST(HostileCrown, ACleanOneOfAHundredVerticesIsCompleted) {
+  const TriangleMesh molar = test::coarsened_to(load_mesh(source_folder / "samples/crown_36.stl").mesh, 100);
+  EXPECT_EQ(outcome(molar, coarse(36)), 0);
+}
+
+TEST(HostileCrown, IsTheSameForTheSameSeed) {
+  const TriangleMesh clean = test::dome(4, 4);
+  for (const std::string& kind : test::hostile_kinds()) {
+    const TriangleMesh one = test::hostile_crown(clean, kind, 5), two = test::hostile_crown(clean, kind, 5);
+    EXPECT_EQ(one.vertices, two.vertices) << kind;
+    EXPECT_EQ(one.triangles, two.triangles) << kind;
+    EXPECT_TRUE(one.vertices != clean.vertices || one.triangles != clean.triangles) << kind;
+  }
+}
+
+TEST(HostileCrown, RefiningGivesTheAskedNumberOfVerticesAndKeepsTheDisc) {
+  const TriangleMesh fine = test::refined_to(test::dome(2, 4), 1234);
+  EXPECT_EQ(fine.vertices.size(), 1234U);
+  EXPECT_EQ(border_loops(fine).size(), 1U);
+  EXPECT_NO_THROW(triangle_adjacency(fine));
+  for (const Point& p : fine.vertices) EXPECT_NEAR(p.norm(), 4, 0.25);
+}
+
+TEST(HostileCrown, ThingsThatAreNoCrown) {
+  for (const TriangleMesh& mesh : {test::torus(24, 12, 3, 1), test::grid(6), test::cube(), test::tetrahedron(),
+                                   test::sphere(2, 4), flipped(test::dome(3, 4)), TriangleMesh{}})
+    EXPECT_NE(outcome(mesh, coarse(36)), 0);
+}
+
+}  // namespace
+}  // namespace rhizodont
