@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace rhizodont::command_line {
 namespace {
@@ -23,6 +24,7 @@ struct CompleteCommand {
   std::string report;
   std::string models;
   int fdi = 0;
+  int candidates = 1;
   bool quiet = false;
   CompleteOptions options;
 };
@@ -49,9 +51,21 @@ MeshFile as_file(const CompletedTooth& tooth) {
   VertexAttribute source{AttributeType::uint8, {}};
   for (const VertexSource s : tooth.source) source.values.push_back(static_cast<double>(s));
   file.vertex_attributes[source_attribute] = std::move(source);
+  VertexAttribute uncertainty{AttributeType::float32, {}};
+  for (const double u : tooth.uncertainty) uncertainty.values.push_back(static_cast<float>(u));
+  file.vertex_attributes["uncertainty"] = std::move(uncertainty);
   file.comments = {"whole tooth: scanned crown with a predicted root, not the patient's anatomy",
-                   "source: 0 scan, 1 transition, 2 predicted"};
+                   "source: 0 scan, 1 transition, 2 predicted",
+                   "uncertainty: expected distance from the true surface, mm"};
   return file;
+}
+
+/// The files of a candidate: the first has the names that the user gave, the others a number before the extension.
+std::filesystem::path numbered(const std::filesystem::path& file, std::size_t candidate) {
+  if (candidate == 0) return file;
+  std::filesystem::path result = file;
+  return result.replace_filename(
+      fmt::format("{}_{}{}", file.stem().string(), candidate + 1, file.extension().string()));
 }
 
 void print_summary(const CompletedTooth& tooth, const std::string& output) {
@@ -62,6 +76,9 @@ void print_summary(const CompletedTooth& tooth, const std::string& output) {
       "{}: tooth {}{}, {} of {} crown triangles kept bit for bit, root {:.1f} mm, new triangles Q {:.3f}, {:.2f} s\n",
       output, r.fdi, r.fdi_guessed ? " (guessed)" : "", r.kept_triangles, r.crown_triangles, r.root_length_mm,
       r.new_triangles.q_avg, seconds);
+  if (const auto& interval = r.root_interval)
+    fmt::print("  root length with 80 % probability {:.1f} to {:.1f} mm, apex within {:.1f} mm\n",
+               interval->length_low_mm, interval->length_high_mm, interval->apex_radius_mm);
   for (const std::string& warning : r.warnings) fmt::print("  note: {}\n", warning);
 }
 
@@ -73,25 +90,31 @@ void run(const CompleteCommand& command) {
   CompleteOptions options = command.options;
   if (command.fdi != 0) options.fdi = command.fdi;
   const ProgressCallback progress = progress_line(command.quiet);
-  CompletedTooth tooth;
+  std::vector<CompletedTooth> candidates;
   try {
-    tooth = complete_tooth(crown.mesh, models, options, progress);
+    candidates = complete_candidates(crown.mesh, models, command.candidates, options, progress);
   } catch (...) {
     clear_line(progress);
     throw;
   }
   clear_line(progress);
-  const std::string report = completion_report(tooth, options, command.crown, sha256_of_file(command.crown));
-  save_mesh(command.output, as_file(tooth));
-  if (!command.report.empty()) {
-    try {
-      write_file_atomically(command.report, report);
-    } catch (...) {
-      std::filesystem::remove(command.output);  // all or nothing
-      throw;
+  const std::string sha256 = sha256_of_file(command.crown);
+  std::vector<std::filesystem::path> written;
+  try {
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      written.push_back(numbered(command.output, i));
+      save_mesh(written.back(), as_file(candidates[i]));
+      if (command.report.empty()) continue;
+      written.push_back(numbered(command.report, i));
+      write_file_atomically(written.back(), completion_report(candidates[i], options, command.crown, sha256));
     }
+  } catch (...) {
+    for (const auto& file : written) std::filesystem::remove(file);  // all or nothing
+    throw;
   }
-  if (!command.quiet) print_summary(tooth, command.output);
+  if (command.quiet) return;
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    print_summary(candidates[i], numbered(command.output, i).string());
 }
 
 }  // namespace
@@ -112,6 +135,18 @@ void add_complete_command(CLI::App& app) {
       ->transform(CLI::CheckedTransformer(unit_names))
       ->default_str("mm");
   complete->add_option("--transition", command->options.transition, "Width in mm of the smoothed band beside the crown")
+      ->capture_default_str();
+  RootSteering& steering = command->options.steering;
+  complete->add_option("--root-length", steering.length_mm,
+                       "Length of the root in mm, such as measured on an X-ray: lowest point of the crown to the apex");
+  complete->add_option("--root-tip", steering.tip_degrees, "Turn the root, degrees; positive: apex towards distal");
+  complete->add_option("--root-torque", steering.torque_degrees,
+                       "Turn the root, degrees; positive: apex towards tongue or palate");
+  complete->add_option("--root-bend", steering.bend_degrees,
+                       "Bend the root's lower half, degrees; positive: apex towards distal");
+  complete
+      ->add_option("--candidates", command->candidates,
+                   "Number of teeth: the expected one, then others (OUTPUT_2, ...) over the interval of root length")
       ->capture_default_str();
   complete->add_option("--threads", command->options.threads, "At most so many threads; 0 = all")
       ->capture_default_str();

@@ -6,6 +6,7 @@
 #include "rhizodont/io.hpp"
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/quality.hpp"
+#include "rhizodont/root_steering.hpp"
 
 #include <array>
 #include <filesystem>
@@ -28,6 +29,7 @@ struct CompleteOptions {
   CapHandling cap = CapHandling::drop;
   double millimetres_per_unit = 1;  ///< > 0: of the input's coordinates; the output has the input's unit
   double transition = 1.5;          ///< mm, [0, 5]: width of the smoothed band beside the crown
+  RootSteering steering;            ///< what the user knows or wants of the root
   int threads = 0;                  ///< >= 0: at most so many threads; 0: all
 };
 
@@ -35,6 +37,12 @@ struct CompleteOptions {
 struct DroppedCrownVertex {
   int vertex = 0;      ///< index in the input
   std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt"
+};
+
+/// Where the truth lies with 80 % probability, as found on generated teeth that the network was not trained on.
+struct RootInterval {
+  double length_low_mm = 0, length_high_mm = 0;  ///< of the root's length
+  double apex_radius_mm = 0;                     ///< of a ball around the apex
 };
 
 struct StageRecord {
@@ -57,9 +65,12 @@ struct CompletionRecord {
   int crown_triangles = 0;  ///< of the input
   int kept_triangles = 0;
   bool cap_dropped = false;
-  double root_length_mm = 0;         ///< along the growth axis, from the crown's border (lowest point) to the apex
-  double tooth_length_mm = 0;        ///< extent along the growth axis
-  double guiding_distance_mean = 0;  ///< mm, from the kept crown's vertices to the guiding surface
+  double root_length_mm = 0;   ///< along the growth axis, from the crown's border (lowest point) to the apex
+  double tooth_length_mm = 0;  ///< extent along the growth axis
+  /// Not there if the user set the length, turned or bent the root, or the weights were never calibrated.
+  std::optional<RootInterval> root_interval;
+  double apex_expected_distance_mm = 0;  ///< what the network expects of its deepest points, before calibration
+  double guiding_distance_mean = 0;      ///< mm, from the kept crown's vertices to the guiding surface
   double guiding_distance_max = 0;
   int guiding_vertices = 0;
   int steiner_points = 0;            ///< added to make the crown a Delaunay mesh, none left in the tooth
@@ -77,6 +88,7 @@ struct CompletionRecord {
 struct CompletedTooth {
   TriangleMesh mesh;                 ///< in the input's unit and frame
   std::vector<VertexSource> source;  ///< per vertex
+  std::vector<double> uncertainty;   ///< mm, per vertex: expected distance from the true surface; 0 on the crown
   CompletionRecord record;
 };
 
@@ -123,5 +135,13 @@ using ProgressCallback = std::function<void(std::string_view stage)>;
 /// NoResultError where no result keeps the promises.
 CompletedTooth complete_tooth(const TriangleMesh& crown, const CompletionModels& models,
                               const CompleteOptions& options = {}, const ProgressCallback& progress = {});
+
+/// Several teeth for one crown that differ in what a crown tells least, the root's length: the expected one first, then
+/// `count` - 1 whose lengths are spread evenly over the interval that holds the truth with 80 % probability, shortest
+/// first. Each is as checked and as exact as that of `complete_tooth`. `count`: 1 to 9; one only where the length is
+/// set by the user. Throws as `complete_tooth`; UsageError for another count or weights without calibration.
+std::vector<CompletedTooth> complete_candidates(const TriangleMesh& crown, const CompletionModels& models, int count,
+                                                const CompleteOptions& options = {},
+                                                const ProgressCallback& progress = {});
 
 }  // namespace rhizodont

@@ -10,7 +10,7 @@
 
 namespace rhizodont {
 
-OrientedPoints complete_points(const TriangleMesh& crown, int fdi, const CanonicalFrame& frame,
+PredictedTooth complete_points(const TriangleMesh& crown, int fdi, const CanonicalFrame& frame,
                                const CompletionNetwork& network) {
   constexpr std::uint64_t seed = 1;
   const int type = fdi == 0 ? unknown_type : tooth_type_of_fdi(fdi);
@@ -22,10 +22,11 @@ OrientedPoints complete_points(const TriangleMesh& crown, int fdi, const Canonic
   for (const Point& p : samples.points) points.push_back(frame.to_canonical(p).cast<float>());
 
   const CompletedPoints completed = network.complete(points, type);
-  OrientedPoints tooth;
+  PredictedTooth tooth;
   for (std::size_t i = 0; i < completed.points.size(); ++i) {
-    tooth.points.push_back(frame.to_world(completed.points[i].cast<double>()));
-    tooth.normals.push_back(frame.direction_to_world(completed.normals[i].cast<double>()).normalized());
+    tooth.cloud.points.push_back(frame.to_world(completed.points[i].cast<double>()));
+    tooth.cloud.normals.push_back(frame.direction_to_world(completed.normals[i].cast<double>()).normalized());
+    tooth.expected_distance.push_back(frame.scale * static_cast<double>(completed.spread[i]));
   }
   return tooth;
 }

@@ -8,17 +8,21 @@
 
 namespace rhizodont {
 
+/// A whole tooth as the completion network sees it.
+struct PredictedTooth {
+  OrientedPoints cloud;                   ///< mm, over crown and root, unit normals that point out of the tooth
+  std::vector<double> expected_distance;  ///< mm, > 0, per point: how far from its true place it is, on average
+};
+
 /// Points of the whole tooth that belongs to a crown, as the completion network sees it (paper, section 3.3).
 /// @param crown    open crown, millimetres; any size and density of triangles
 /// @param fdi      FDI number; 0 where it is not known
 /// @param frame    the crown's canonical frame; the side and pose that the network works in
 /// @param network  with its weights
-/// @return         points over crown and root in the crown's millimetres, with unit normals that point out of the
-/// tooth;
-///                 the crown's points are the network's too, not the scan's
+/// @return         in the crown's millimetres; the crown's points are the network's too, not the scan's
 /// The same for the same crown, whatever the number of threads. Throws InputError for a crown without area or far from
 /// a tooth's size, UsageError for an unknown FDI number.
-OrientedPoints complete_points(const TriangleMesh& crown, int fdi, const CanonicalFrame& frame,
+PredictedTooth complete_points(const TriangleMesh& crown, int fdi, const CanonicalFrame& frame,
                                const CompletionNetwork& network);
 
 }  // namespace rhizodont

@@ -155,7 +155,8 @@ AdaPoinTrImpl::AdaPoinTrImpl(const CompletionShape& given) : shape(given) {
   using Widths = std::vector<std::int64_t>;
   const std::int64_t width = shape.width, wide = shape.global_width, types = tooth_types + 1;
   const std::int64_t outputs = 6L * shape.patch_points;
-  anchors = register_parameter("anchors", torch::randn({types, shape.queries, 3}) * 0.5);
+  patches = register_parameter("patches", torch::randn({types, shape.queries, shape.patch_points, 3}) * 0.5);
+  patch_normals = register_parameter("patch_normals", torch::randn({types, shape.queries, shape.patch_points, 3}));
   type_embedding = register_parameter("type_embedding", torch::randn({types, width}) * 0.02);
   input_lift = register_module("input_lift", layers::Linear(3, 16));
   edge_1 = register_module("edge_1", layers::EdgeConv(16, 32, true));
@@ -173,6 +174,7 @@ AdaPoinTrImpl::AdaPoinTrImpl(const CompletionShape& given) : shape(given) {
   coarse_out = register_module("coarse_out", layers::Mlp(Widths{wide, width, 3}));
   query_global = register_module("query_global", layers::Linear(wide, wide));
   query_position = register_module("query_position", layers::Linear(position_features, wide, false));
+  query_identity = register_module("query_identity", layers::Linear(position_features + 3, wide, false));
   query_out = register_module("query_out", layers::Mlp(Widths{wide, width}));
   decoder = register_module("decoder", torch::nn::ModuleList());
   for (int i = 0; i < shape.decoder_depth; ++i) decoder->push_back(DecoderBlock(shape, i == 0));
@@ -184,19 +186,33 @@ AdaPoinTrImpl::AdaPoinTrImpl(const CompletionShape& given) : shape(given) {
   head_hidden = register_module("head_hidden", layers::Linear(width, wide));
   head_summary = register_module("head_summary", layers::Linear(width, wide, false));
   head_out = register_module("head_out", layers::Linear(wide, outputs));
+  head_spread = register_module("head_spread", layers::Linear(wide, shape.patch_points));
   torch::NoGradGuard no_gradient;
   for (layers::Linear* linear :
-       {&input_lift, &position->layers.front(), &coarse_anchor, &query_position, &head_position_in})
+       {&input_lift, &position->layers.front(), &coarse_anchor, &query_position, &query_identity, &head_position_in})
     (*linear)->weight.normal_(0, 0.3);  // few inputs, and all depends on them
-  // A patch starts as a small cloud: coinciding points would all get the same gradient.
-  head_out->bias.view({shape.patch_points, 6}).narrow(1, 0, 3).normal_(0, 0.06);
+  head_out->weight.mul_(0.1);           // patches start as they are on the type's tooth
 }
 
-void AdaPoinTrImpl::set_anchors(int type, std::span<const float> xyz) {
-  if (type < 0 || type > unknown_type || xyz.size() != 3 * static_cast<std::size_t>(shape.queries))
-    throw UsageError("The anchors do not fit the network.");
+void AdaPoinTrImpl::set_patches(int type, std::span<const float> points, std::span<const float> normals) {
+  const std::int64_t each = std::int64_t{3} * shape.queries * shape.patch_points;
+  if (type < 0 || type > unknown_type || points.size() != static_cast<std::size_t>(each) ||
+      normals.size() != points.size())
+    throw UsageError("The patches do not fit the network.");
   torch::NoGradGuard no_gradient;
-  std::copy(xyz.begin(), xyz.end(), anchors.data_ptr<float>() + type * 3 * shape.queries);
+  std::copy(points.begin(), points.end(), patches.data_ptr<float>() + type * each);
+  std::copy(normals.begin(), normals.end(), patch_normals.data_ptr<float>() + type * each);
+}
+
+/// The queries before they are bent to a crown.
+Starts AdaPoinTrImpl::patch_starts(const torch::Tensor& types) const {
+  const torch::Tensor points = patches.index_select(0, types), normals = patch_normals.index_select(0, types);
+  Starts starts;
+  starts.points = points.mean(2);
+  starts.offsets = (points - starts.points.unsqueeze(2)).flatten(2);
+  starts.normals = normals.flatten(2);
+  starts.identity = torch::cat({fourier_features(starts.points), normals.mean(2)}, -1);
+  return starts;
 }
 
 torch::Tensor AdaPoinTrImpl::encode(const CrownBatch& crowns, Precision precision) {
@@ -213,42 +229,55 @@ torch::Tensor AdaPoinTrImpl::encode(const CrownBatch& crowns, Precision precisio
   return norm_memory->forward(x);
 }
 
-void AdaPoinTrImpl::rebuild(const torch::Tensor& q, const torch::Tensor& starts, std::int64_t main,
-                            Prediction& prediction, Precision precision) {
+void AdaPoinTrImpl::rebuild(const torch::Tensor& q, const Starts& starts, std::int64_t main, Prediction& prediction,
+                            Precision precision) {
   const std::int64_t batch = q.size(0), total = q.size(1), points = shape.patch_points;
   const torch::Tensor summary = largest(head_global->forward(q.narrow(1, 0, main), precision));
   const torch::Tensor features = torch::gelu(head_query_in->forward(q, precision).to(torch::kFloat) +
-                                             head_position_in->forward(fourier_features(starts), precision) +
+                                             head_position_in->forward(fourier_features(starts.points), precision) +
                                              head_global_in->forward(summary, precision).unsqueeze(1));
   const torch::Tensor overall = largest(features.narrow(1, 0, main));
   const torch::Tensor hidden =
       torch::gelu(head_hidden->forward(features, precision) + head_summary->forward(overall, precision).unsqueeze(1));
   const torch::Tensor out = head_out->forward(hidden, precision).to(torch::kFloat).view({batch, total, points, 6});
-  const torch::Tensor fine = starts.unsqueeze(2) + out.narrow(3, 0, 3);
-  const torch::Tensor direction = out.narrow(3, 3, 3);
+  const torch::Tensor fine =
+      starts.points.unsqueeze(2) + starts.offsets.view({batch, total, points, 3}) + out.narrow(3, 0, 3);
+  const torch::Tensor direction = starts.normals.view({batch, total, points, 3}) + out.narrow(3, 3, 3);
   const torch::Tensor normals = direction / torch::sqrt(direction.square().sum(-1, true) + 1e-8);
   prediction.fine = fine.narrow(1, 0, main).reshape({batch, main * points, 3});
   prediction.normals = normals.narrow(1, 0, main).reshape({batch, main * points, 3});
+  // How far off the points are is read from what they were made of, without a say in how they are made.
+  prediction.spread = head_spread->forward(hidden.narrow(1, 0, main).detach(), precision)
+                          .to(torch::kFloat)
+                          .reshape({batch, main * points});
   if (main < total) prediction.denoised = fine.narrow(1, main, total - main);
 }
 
-Prediction AdaPoinTrImpl::forward(const CrownBatch& crowns, const torch::Tensor& seeds, Precision precision) {
+Prediction AdaPoinTrImpl::forward(const CrownBatch& crowns, const torch::Tensor& seeds,
+                                  const torch::Tensor& seed_patches, Precision precision) {
   const torch::Tensor memory = encode(crowns, precision);
   const torch::Tensor global = largest(to_global->forward(memory, precision));
-  const torch::Tensor anchor = anchors.index_select(0, crowns.types);
+  Starts starts = patch_starts(crowns.types);
   const torch::Tensor bend =
-      coarse_out->forward(torch::gelu(coarse_anchor->forward(fourier_features(anchor), precision) +
+      coarse_out->forward(torch::gelu(coarse_anchor->forward(fourier_features(starts.points), precision) +
                                       coarse_global->forward(global, precision).unsqueeze(1)),
                           precision);
   Prediction prediction;
-  prediction.coarse = anchor + bend;
+  prediction.coarse = starts.points + bend;
   // The fine points' gradient also moves the queries: a patch that is off as a whole is mended where it starts.
-  const torch::Tensor starts = seeds.defined() ? torch::cat({prediction.coarse, seeds}, 1) : prediction.coarse;
+  starts.points = prediction.coarse;
+  if (seeds.defined()) {
+    const torch::Tensor known = (seed_patches >= 0).to(torch::kFloat).unsqueeze(-1), index = seed_patches.clamp_min(0);
+    starts.points = torch::cat({starts.points, seeds}, 1);
+    for (torch::Tensor* part : {&starts.offsets, &starts.normals, &starts.identity})
+      *part = torch::cat({*part, known * layers::gather_rows(*part, index)}, 1);
+  }
   const std::int64_t main = shape.queries;
   const QueryNeighbours neighbours =
-      query_neighbours(starts, main, crowns.points.narrow(1, 0, shape.centres_2).contiguous());
+      query_neighbours(starts.points, main, crowns.points.narrow(1, 0, shape.centres_2).contiguous());
   torch::Tensor q = query_out
-                        ->forward(torch::gelu(query_position->forward(fourier_features(starts), precision) +
+                        ->forward(torch::gelu(query_position->forward(fourier_features(starts.points), precision) +
+                                              query_identity->forward(starts.identity, precision) +
                                               query_global->forward(global, precision).unsqueeze(1)),
                                   precision)
                         .to(torch::kFloat);

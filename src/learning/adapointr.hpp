@@ -34,6 +34,7 @@ struct Prediction {
   torch::Tensor coarse;    ///< B x queries x 3
   torch::Tensor fine;      ///< B x (queries patch_points) x 3; point i belongs to query i / patch_points
   torch::Tensor normals;   ///< as fine, unit length
+  torch::Tensor spread;    ///< B x (queries patch_points): logarithm of a point's expected distance from its place
   torch::Tensor denoised;  ///< B x seeds x patch_points x 3; undefined without seeds
 };
 
@@ -70,41 +71,56 @@ struct DecoderBlockImpl : torch::nn::Module {
 };
 TORCH_MODULE(DecoderBlock);
 
+/// What queries start from, B x (queries + seeds) each.
+struct Starts {
+  torch::Tensor points;    ///< x 3: where they are now
+  torch::Tensor offsets;   ///< x (3 patch_points): the patch's points from its middle
+  torch::Tensor normals;   ///< x (3 patch_points): the patch's normals
+  torch::Tensor identity;  ///< x features of the place on the type's tooth; zero for a seed without a patch
+};
+
 /// AdaPoinTr (Yu et al., AdaPoinTr: Diverse Point Cloud Completion with Adaptive Geometry-Aware Transformers, 2023) for
 /// teeth, with these differences:
-/// - Queries start at learned anchors, one set per tooth type and one for "unknown", which a small network bends to the
-///   crown at hand. They replace the candidates and their ranking, which gets no gradient in the published code.
+/// - Each tooth type, and "unknown", has a learned tooth of patches of points with normals. Queries start at the
+/// middles
+///   of the patches, which a small network bends to the crown at hand; the rebuild head moves a patch's points and
+///   turns its normals from there. They replace the candidates and their ranking, which gets no gradient in the
+///   published code.
 /// - The tooth type is an embedding added to every token.
 /// - Coordinates enter with sines and cosines of several wavelengths (Tancik et al., Fourier Features, 2020).
 /// - Edge convolutions normalise after the maximum, per point; the rebuild head has no batch normalisation.
 /// - Denoising queries start at disturbed points of the target, root included, instead of the input's; nothing of the
 ///   main prediction sees them, the rebuild head's maximum included.
-/// - Each output point has a normal.
+/// - Each output point has a normal and an expected distance from its true place, learned beside the points.
 struct AdaPoinTrImpl : torch::nn::Module {
   explicit AdaPoinTrImpl(const CompletionShape& shape);
 
-  /// Sets the anchors of type 0..15 or unknown_type: `queries` x 3 numbers.
-  void set_anchors(int type, std::span<const float> xyz);
+  /// Sets the tooth of type 0..15 or unknown_type: queries x patch_points x 3 numbers each.
+  void set_patches(int type, std::span<const float> points, std::span<const float> normals);
 
-  /// seeds: B x n x 3 disturbed target points, or undefined.
-  Prediction forward(const CrownBatch& crowns, const torch::Tensor& seeds, layers::Precision precision);
+  /// seeds: B x n x 3 disturbed target points, or undefined; seed_patches: int64, B x n, the patch that a seed stands
+  /// for, or -1.
+  Prediction forward(const CrownBatch& crowns, const torch::Tensor& seeds, const torch::Tensor& seed_patches,
+                     layers::Precision precision);
 
   CompletionShape shape;
-  torch::Tensor anchors, type_embedding;
+  torch::Tensor patches, patch_normals, type_embedding;
   layers::Linear input_lift{nullptr};
   layers::EdgeConv edge_1{nullptr}, edge_2{nullptr}, edge_3{nullptr}, edge_4{nullptr};
   layers::Mlp input_projection{nullptr}, position{nullptr}, to_global{nullptr};
   torch::nn::ModuleList encoder{nullptr}, decoder{nullptr};
   layers::Linear coarse_global{nullptr}, coarse_anchor{nullptr}, query_global{nullptr}, query_position{nullptr};
+  layers::Linear query_identity{nullptr};
   layers::Mlp coarse_out{nullptr}, query_out{nullptr};
   layers::Norm norm_memory{nullptr}, norm_queries{nullptr};
   layers::Mlp head_global{nullptr};
   layers::Linear head_global_in{nullptr}, head_query_in{nullptr}, head_position_in{nullptr};
-  layers::Linear head_hidden{nullptr}, head_summary{nullptr}, head_out{nullptr};
+  layers::Linear head_hidden{nullptr}, head_summary{nullptr}, head_out{nullptr}, head_spread{nullptr};
 
  private:
+  Starts patch_starts(const torch::Tensor& types) const;
   torch::Tensor encode(const CrownBatch& crowns, layers::Precision precision);
-  void rebuild(const torch::Tensor& q, const torch::Tensor& starts, std::int64_t main, Prediction& prediction,
+  void rebuild(const torch::Tensor& q, const Starts& starts, std::int64_t main, Prediction& prediction,
                layers::Precision precision);
 };
 TORCH_MODULE(AdaPoinTr);

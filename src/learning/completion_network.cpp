@@ -56,16 +56,19 @@ CompletedPoints CompletionNetwork::complete(std::span<const Eigen::Vector3f> cro
   const CrownBatch batch = make_crown_batch(impl_->shape, {xyz}, {type});
   if ((batch.points[0][0] - batch.points[0][impl_->shape.centres_2 - 1]).abs().max().item<float>() == 0)
     throw InputError("The crown's points coincide.");
-  const Prediction prediction = impl_->network->forward(batch, {}, layers::Precision::single);
-  if (!torch::isfinite(prediction.fine).all().item<bool>() || !torch::isfinite(prediction.normals).all().item<bool>())
+  const Prediction prediction = impl_->network->forward(batch, {}, {}, layers::Precision::single);
+  if (!torch::isfinite(prediction.fine).all().item<bool>() || !torch::isfinite(prediction.normals).all().item<bool>() ||
+      !torch::isfinite(prediction.spread).all().item<bool>())
     throw NoResultError("The completion network came to no result for this crown.");
 
   CompletedPoints result;
   const auto fine = prediction.fine[0].contiguous(), normals = prediction.normals[0].contiguous();
+  const auto spread = prediction.spread[0].contiguous();
   const float* point = fine.data_ptr<float>();
   const float* normal = normals.data_ptr<float>();
   for (std::int64_t i = 0; i < fine.size(0); ++i) {
     result.points.emplace_back(point[3 * i], point[3 * i + 1], point[3 * i + 2]);
+    result.spread.push_back(std::exp(spread.data_ptr<float>()[i]));
     result.normals.push_back(Eigen::Vector3f(normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]).normalized());
   }
   return result;

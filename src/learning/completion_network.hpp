@@ -17,6 +17,7 @@ namespace rhizodont {
 struct CompletedPoints {
   std::vector<Eigen::Vector3f> points;   ///< on the whole tooth, crown included, denser on the root
   std::vector<Eigen::Vector3f> normals;  ///< unit length, outward; as many as points
+  std::vector<float> spread;             ///< > 0: how far off a point is expected to be, on average
 };
 
 /// The completion network with its weights: crown points in, points of the whole tooth out (AdaPoinTr, see

@@ -131,6 +131,12 @@ torch::Tensor gather_max(const torch::Tensor& values, const torch::Tensor& neigh
   return GatherMax::apply(values, neighbours);
 }
 
+torch::Tensor gather_rows(const torch::Tensor& points, const torch::Tensor& indices) {
+  const std::int64_t batch = points.size(0), count = points.size(1), channels = points.size(2);
+  const torch::Tensor flat = (indices + torch::arange(batch, torch::kLong).unsqueeze(1) * count).flatten();
+  return points.reshape({batch * count, channels}).index_select(0, flat).view({batch, indices.size(1), channels});
+}
+
 EdgeConvImpl::EdgeConvImpl(std::int64_t in, std::int64_t out, bool with_norm)
     : neighbour(register_module("neighbour", Linear(in, out, false))),
       centre(register_module("centre", Linear(in, out))) {

@@ -46,6 +46,9 @@ TORCH_MODULE(Mlp);
 /// The gradient goes to the neighbour that had the largest value (the first of equals).
 torch::Tensor gather_max(const torch::Tensor& values, const torch::Tensor& neighbours);
 
+/// Rows of `points` (B x N x C) at `indices` (int64, B x Q): B x Q x C, differentiable in `points`.
+torch::Tensor gather_rows(const torch::Tensor& points, const torch::Tensor& indices);
+
 /// Max over neighbours j of LeakyReLU(W [f_j - g_i, g_i] + b), the edge convolution of Wang et al., Dynamic Graph CNN,
 /// 2019. Since LeakyReLU is monotone and W is linear, this equals LeakyReLU(max_j (W1 f_j) + (W2 - W1) g_i + b): the
 /// product is taken once per point instead of once per edge.

@@ -12,6 +12,8 @@
 namespace rhizodont {
 namespace {
 
+using layers::gather_rows;
+
 std::span<const float> row(const torch::Tensor& points, std::int64_t b) {
   const std::int64_t size = points.size(1) * points.size(2);
   return {points.data_ptr<float>() + b * size, static_cast<std::size_t>(size)};
@@ -43,12 +45,6 @@ ClosestPoints closest_points(const torch::Tensor& first, const torch::Tensor& se
   return closest;
 }
 
-torch::Tensor gather_rows(const torch::Tensor& points, const torch::Tensor& indices) {
-  const std::int64_t batch = points.size(0), count = points.size(1), channels = points.size(2);
-  const torch::Tensor flat = (indices + torch::arange(batch, torch::kLong).unsqueeze(1) * count).flatten();
-  return points.reshape({batch * count, channels}).index_select(0, flat).view({batch, indices.size(1), channels});
-}
-
 torch::Tensor safe_length(const torch::Tensor& vectors) { return torch::sqrt(vectors.square().sum(-1) + 1e-8); }
 
 torch::Tensor weighted_chamfer(const torch::Tensor& predicted, const torch::Tensor& target,
@@ -74,7 +70,9 @@ LossTerms training_loss(const Prediction& prediction, const TargetBatch& target,
   const ClosestPoints closest_coarse = closest_points(prediction.coarse, target.points);
 
   const torch::Tensor chamfer = weighted_chamfer(prediction.fine, target.points, weights, closest);
-  const torch::Tensor match = weighted_mean(safe_length(prediction.fine - target.matched), matched_weights);
+  const torch::Tensor distances = safe_length(prediction.fine - target.matched);
+  const torch::Tensor match = weighted_mean(distances, matched_weights);
+  const torch::Tensor spread = (distances.detach() * torch::exp(-prediction.spread) + prediction.spread).mean(1);
   const torch::Tensor middles = target.matched.view({batch, queries, -1, 3}).mean(2);
   const torch::Tensor coarse = is_matched * weighted_mean(safe_length(prediction.coarse - middles),
                                                           matched_weights.view({batch, queries, -1}).select(2, 0)) +
@@ -86,6 +84,7 @@ LossTerms training_loss(const Prediction& prediction, const TargetBatch& target,
   LossTerms terms;
   terms.coarse = coarse.mean();
   terms.match = (is_matched * match).sum() / is_matched.sum().clamp_min(1);
+  terms.spread = (is_matched * spread).sum() / is_matched.sum().clamp_min(1);
   terms.chamfer = chamfer.mean();
   terms.normal = normal.mean();
   terms.denoise = torch::zeros({});
@@ -95,7 +94,7 @@ LossTerms training_loss(const Prediction& prediction, const TargetBatch& target,
                         .mean();
   terms.total = (is_matched * (match + options.chamfer_weight * chamfer) + is_free * chamfer).mean() +
                 options.coarse_weight * terms.coarse + options.denoise_weight * terms.denoise +
-                options.normal_weight * terms.normal;
+                options.normal_weight * terms.normal + options.spread_weight * terms.spread;
   return terms;
 }
 

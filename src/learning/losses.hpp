@@ -19,9 +19,6 @@ struct ClosestPoints {
 /// Exact; no gradient.
 ClosestPoints closest_points(const torch::Tensor& first, const torch::Tensor& second);
 
-/// Rows of `points` (B x N x C) at `indices` (int64, B x Q): B x Q x C, differentiable in `points`.
-torch::Tensor gather_rows(const torch::Tensor& points, const torch::Tensor& indices);
-
 /// Length of the last axis' vectors, sqrt(|v|^2 + 1e-8): finite gradient where points coincide.
 torch::Tensor safe_length(const torch::Tensor& vectors);
 
@@ -40,6 +37,7 @@ struct TargetBatch {
   torch::Tensor normals;          ///< float, B x M x 3, unit length
   torch::Tensor root;             ///< float, B x M: 1 below the crown, 0 on it
   torch::Tensor seeds;            ///< float, B x n x 3: disturbed target points; undefined: no denoising
+  torch::Tensor seed_patches;     ///< int64, B x n: the patch whose points a seed is to become, -1 where unmatched
   torch::Tensor denoise_target;   ///< float, B x n x patch_points x 3; in the patch's own order where matched
   torch::Tensor is_matched;       ///< float, B: 1 where the next three are known, 0 where they are zero
   torch::Tensor matched;          ///< float, B x (queries patch_points) x 3: where each predicted point belongs
@@ -55,12 +53,14 @@ struct LossTerms {
   torch::Tensor chamfer;  ///< Chamfer-L1 of all points
   torch::Tensor denoise;  ///< of the denoising patches; 0 without
   torch::Tensor normal;   ///< mean of 1 - cos between a point's normal and the true one
+  torch::Tensor spread;   ///< of the distances that the network expects of its points; over matched samples
 };
 
 /// Where it is known which target point is which, each point is drawn to its own place: unlike the Chamfer distance,
 /// which is least for points scattered over all places where an unpredictable surface may be, this has the median
 /// surface as its optimum, smooth and evenly covered. The Chamfer distance does the rest: samples without
-/// correspondence, and a share of `chamfer_weight` of the others.
+/// correspondence, and a share of `chamfer_weight` of the others. The expected distance s of a point that is r off
+/// costs r / s + log s, least on average where s is the mean of r (the likelihood of an exponential distribution).
 LossTerms training_loss(const Prediction& prediction, const TargetBatch& target, const TrainingOptions& options);
 
 }  // namespace rhizodont

@@ -22,7 +22,7 @@ struct TrainedTensor {
   bool decays = false;    ///< weight decay applies
 };
 
-/// State for all parameters of a module; weight matrices decay, vectors and anchors do not.
+/// State for all parameters of a module; weight matrices decay, vectors and patches do not.
 std::vector<TrainedTensor> trained_tensors(const torch::nn::Module& module);
 
 /// Settings of one step.

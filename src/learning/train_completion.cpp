@@ -36,7 +36,7 @@ double minutes_since(Clock::time_point then) { return std::chrono::duration<doub
 
 /// The terms of a loss as numbers, summed or averaged over steps.
 struct Figures {
-  double total = 0, coarse = 0, match = 0, chamfer = 0, denoise = 0, normal = 0, gradient = 0;
+  double total = 0, coarse = 0, match = 0, chamfer = 0, denoise = 0, normal = 0, spread = 0, gradient = 0;
 
   Figures& operator+=(const Figures& other) {
     total += other.total;
@@ -45,19 +45,17 @@ struct Figures {
     chamfer += other.chamfer;
     denoise += other.denoise;
     normal += other.normal;
+    spread += other.spread;
     gradient += other.gradient;
     return *this;
   }
 };
 
 Figures to_figures(const LossTerms& terms) {
-  return {terms.total.item<double>(),
-          terms.coarse.item<double>(),
-          terms.match.item<double>(),
-          terms.chamfer.item<double>(),
-          terms.denoise.item<double>(),
-          terms.normal.item<double>(),
-          0};
+  return {terms.total.item<double>(),   terms.coarse.item<double>(),
+          terms.match.item<double>(),   terms.chamfer.item<double>(),
+          terms.denoise.item<double>(), terms.normal.item<double>(),
+          terms.spread.item<double>(),  0};
 }
 
 /// What one thread brings back from its share of a batch.
@@ -121,8 +119,10 @@ Trainer::Trainer(const SampleProvider& provider, const TrainingOptions& options)
   tensors_ = trained_tensors(*network_);
   if (options.resume && load_checkpoint()) return;
   QueryLayout layout = initial_layout(provider, options.shape);
-  for (int type = 0; type <= unknown_type; ++type)
-    network_->set_anchors(type, layout.anchors[static_cast<std::size_t>(type)]);
+  for (int type = 0; type <= unknown_type; ++type) {
+    const auto& patches = layout.patches[static_cast<std::size_t>(type)];
+    network_->set_patches(type, patches.points, patches.normals);
+  }
   layouts_ = std::move(layout.points);
   for (TrainedTensor& tensor : tensors_) tensor.average.copy_(tensor.value);
 }
@@ -136,7 +136,8 @@ Share Trainer::work(std::uint64_t first) const {
   const TensorThreads one_thread(1);  // counts per thread: this may be a fresh one
   const TrainingBatch batch =
       make_training_batch(provider_, layouts_, first, options_.batch / options_.threads, options_, true);
-  const Prediction prediction = network_->forward(batch.crowns, batch.target.seeds, precision_);
+  const Prediction prediction =
+      network_->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, precision_);
   const LossTerms terms = training_loss(prediction, batch.target, options_);
   Share share;
   share.figures = to_figures(terms);
@@ -171,8 +172,8 @@ Figures Trainer::step() {
   step.average_decay = std::min(options_.average_decay, (1 + done) / (10 + done));
   step.step = static_cast<std::int64_t>(result_.steps) + 1;
   Figures figures = sum.figures;
-  for (double* value :
-       {&figures.total, &figures.coarse, &figures.match, &figures.chamfer, &figures.denoise, &figures.normal})
+  for (double* value : {&figures.total, &figures.coarse, &figures.match, &figures.chamfer, &figures.denoise,
+                        &figures.normal, &figures.spread})
     *value *= scale;
   figures.gradient = adamw_step(tensors_, sum.gradients, step);
   ++result_.steps;
@@ -186,12 +187,12 @@ void Trainer::log_progress(const Figures& sum, std::uint64_t steps, double minut
   const auto n = static_cast<double>(steps);
   std::snprintf(line, sizeof line,
                 "step %llu samples %llu loss %.4f coarse %.3f mm match %.3f mm chamfer %.3f mm denoise %.3f mm normal "
-                "%.4f gradient %.2f "
+                "%.4f spread %.3f gradient %.2f "
                 "rate %.2e %.1f samples/s",
                 static_cast<unsigned long long>(result_.steps), static_cast<unsigned long long>(result_.samples),
                 sum.total / n, sum.coarse / n * unit_mm, sum.match / n * unit_mm, sum.chamfer / n * unit_mm,
-                sum.denoise / n * unit_mm, sum.normal / n, sum.gradient / n, learning_rate(options_, result_.steps - 1),
-                n * options_.batch / (minutes * 60));
+                sum.denoise / n * unit_mm, sum.normal / n, sum.spread / n, sum.gradient / n,
+                learning_rate(options_, result_.steps - 1), n * options_.batch / (minutes * 60));
   log(line);
 }
 
@@ -209,7 +210,7 @@ void Trainer::validate() {
   for (int i = 0; i < batches; ++i) {
     const auto first = first_validation_sample + static_cast<std::uint64_t>(i * batch);
     const TrainingBatch samples = make_training_batch(provider_, layouts_, first, batch, options_, false);
-    const Prediction prediction = network_->forward(samples.crowns, {}, precision_);
+    const Prediction prediction = network_->forward(samples.crowns, {}, {}, precision_);
     const TargetBatch& target = samples.target;
     const ClosestPoints closest = closest_points(prediction.fine, target.points);
     whole +=
@@ -218,7 +219,7 @@ void Trainer::validate() {
     const torch::Tensor deepest = std::get<0>(prediction.fine.select(2, 2).min(1));
     length += (deepest - std::get<0>(target.points.select(2, 2).min(1))).abs().mean().item<double>();
     const torch::Tensor cosine =
-        (prediction.normals * gather_rows(target.normals, closest.first_to_second)).sum(-1).clamp(-1, 1);
+        (prediction.normals * layers::gather_rows(target.normals, closest.first_to_second)).sum(-1).clamp(-1, 1);
     normal += torch::acos(cosine).mean().item<double>() * 180 / std::numbers::pi;
   }
   for (TrainedTensor& tensor : tensors_) {
@@ -374,6 +375,7 @@ std::map<std::string, std::string> export_completion(const std::filesystem::path
   } else {
     throw InputError("The folder " + folder.string() + " has no weights to export.");
   }
+  read_shape(file.metadata);  // weights of an older network must not get out
   for (const auto& [key, text] : notes) file.metadata[key] = text;
   write_safetensors(path, file);
   return file.metadata;

@@ -35,7 +35,7 @@ struct TrainingOptions {
   double learning_rate = 6e-4;      ///< largest rate, reached after the warm-up
   double lowest_rate = 0.02;        ///< share of `learning_rate` left at the end of the cosine, 0..1
   int warm_up = 300;                ///< steps of linear warm-up, >= 0
-  double weight_decay = 5e-4;       ///< of weight matrices; biases, norms and anchors have none
+  double weight_decay = 5e-4;       ///< of weight matrices; biases, norms and patches have none
   double gradient_clip = 1.0;       ///< largest L2 norm of the gradient
   double average_decay = 0.998;     ///< of the running mean of the weights that is validated and exported, 0..1
   double unknown_share = 0.1;       ///< share of samples whose type is hidden, 0..1
@@ -44,6 +44,7 @@ struct TrainingOptions {
   double denoise_weight = 0.5;      ///< of the denoising queries
   double chamfer_weight = 0.2;      ///< of the Chamfer term of samples whose correspondence is known, >= 0
   double normal_weight = 0.1;       ///< of the term 1 - cos, beside lengths in units of 12 mm
+  double spread_weight = 0.02;      ///< of the expected distances' term; it moves nothing but their own layer
   int denoise_queries = 32;         ///< extra queries in training, >= 0
   double denoise_jitter = 0.05;     ///< standard deviation of their displacement, units of 12 mm
   bool half_precision = true;       ///< bfloat16 for matrix products where the processor has them

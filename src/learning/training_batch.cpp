@@ -84,23 +84,26 @@ PointLayout layout_of(const TrainingSample& sample, const CompletionShape& shape
   return layout;
 }
 
-std::vector<float> anchors_of(const TrainingSample& sample, const PointLayout& layout, const CompletionShape& shape) {
-  std::vector<float> anchors;
-  if (layout.empty()) {
-    for (const std::int32_t i : spread_over_tooth(sample.target, sample.is_root, shape.queries)) {
-      const Eigen::Vector3f& p = sample.target[static_cast<std::size_t>(i)];
-      anchors.insert(anchors.end(), p.data(), p.data() + 3);
-    }
-    return anchors;
+void append(std::vector<float>& numbers, const Eigen::Vector3f& vector) {
+  numbers.insert(numbers.end(), vector.data(), vector.data() + 3);
+}
+
+/// The sample's own points of a layout; without one, patches around points spread over the target.
+ToothPatches patches_of(const TrainingSample& sample, const PointLayout& layout, const CompletionShape& shape) {
+  ToothPatches patches;
+  for (const std::int32_t index : layout) {
+    append(patches.points, sample.matched[static_cast<std::size_t>(index)]);
+    append(patches.normals, sample.matched_normals[static_cast<std::size_t>(index)]);
   }
-  const auto each = static_cast<std::size_t>(shape.patch_points);
-  for (std::size_t begin = 0; begin < layout.size(); begin += each) {
-    Eigen::Vector3f middle = Eigen::Vector3f::Zero();
-    for (std::size_t i = begin; i < begin + each; ++i) middle += sample.matched[static_cast<std::size_t>(layout[i])];
-    middle /= static_cast<float>(each);
-    anchors.insert(anchors.end(), middle.data(), middle.data() + 3);
+  if (!layout.empty()) return patches;
+  std::vector<float> middles;
+  for (const std::int32_t index : spread_over_tooth(sample.target, sample.is_root, shape.queries))
+    append(middles, sample.target[static_cast<std::size_t>(index)]);
+  for (const std::int32_t index : nearest_keys(middles, flatten(sample.target), shape.patch_points)) {
+    append(patches.points, sample.target[static_cast<std::size_t>(index)]);
+    append(patches.normals, sample.normals[static_cast<std::size_t>(index)]);
   }
-  return anchors;
+  return patches;
 }
 
 float depth(const TrainingSample& sample) {
@@ -111,12 +114,13 @@ float depth(const TrainingSample& sample) {
 
 /// Disturbed middles of patches that are drawn at random, and where the points of these patches belong.
 void add_matched_seeds(const float* matched, const TrainingOptions& options, std::mt19937_64& random, float* seeds,
-                       float* patches) {
+                       std::int64_t* seed_patches, float* patches) {
   const int each = options.shape.patch_points;
   std::uniform_int_distribution<int> patch(0, options.shape.queries - 1);
   std::normal_distribution<float> jitter(0, static_cast<float>(options.denoise_jitter));
   for (int s = 0; s < options.denoise_queries; ++s, seeds += 3, patches += 3 * each) {
-    const float* points = matched + std::ptrdiff_t{3} * each * patch(random);
+    *seed_patches = patch(random);
+    const float* points = matched + 3 * each * *seed_patches++;
     std::copy_n(points, 3 * each, patches);
     for (int axis = 0; axis < 3; ++axis) {
       seeds[axis] = jitter(random);
@@ -150,6 +154,7 @@ void reserve(TargetBatch& target, std::int64_t count, std::int64_t points, std::
   target.matched_root = torch::zeros({count, outputs});
   if (seeds == 0) return;
   target.seeds = torch::empty({count, seeds, 3});
+  target.seed_patches = torch::full({count, seeds}, -1, torch::kLong);
   target.denoise_target = torch::empty({count, seeds, shape.patch_points, 3});
 }
 
@@ -218,7 +223,8 @@ TrainingBatch make_training_batch(const SampleProvider& provider, const std::vec
     float* starts = target.seeds[b].data_ptr<float>();
     float* patches = target.denoise_target[b].data_ptr<float>();
     if (matched) {
-      add_matched_seeds(target.matched[b].data_ptr<float>(), options, random, starts, patches);
+      add_matched_seeds(target.matched[b].data_ptr<float>(), options, random, starts,
+                        target.seed_patches[b].data_ptr<std::int64_t>(), patches);
     } else {
       add_seeds(xyz, options, random, starts, patches);
     }
@@ -231,11 +237,11 @@ QueryLayout initial_layout(const SampleProvider& provider, const CompletionShape
   constexpr std::size_t samples_per_type = 7;
   constexpr std::uint64_t most_samples = 300;
   std::array<std::vector<TrainingSample>, tooth_types> found;
-  std::vector<float> any;
+  ToothPatches any;
   for (std::uint64_t number = 0; number < most_samples; ++number) {
     TrainingSample sample = provider(number);
     check_sample(sample, shape);
-    if (any.empty()) any = anchors_of(sample, {}, shape);
+    if (any.points.empty()) any = patches_of(sample, {}, shape);
     if (sample.type == unknown_type) continue;
     auto& list = found[static_cast<std::size_t>(sample.type)];
     // Where a type has samples with and without corresponding points, only the former count.
@@ -246,7 +252,7 @@ QueryLayout initial_layout(const SampleProvider& provider, const CompletionShape
   QueryLayout result;
   for (auto& list : found) {
     if (list.empty()) {
-      result.anchors.push_back(any);
+      result.patches.push_back(any);
       result.points.emplace_back();
       continue;
     }
@@ -254,15 +260,19 @@ QueryLayout initial_layout(const SampleProvider& provider, const CompletionShape
     std::nth_element(list.begin(), middle, list.end(),
                      [](const TrainingSample& a, const TrainingSample& b) { return depth(a) < depth(b); });
     result.points.push_back(layout_of(*middle, shape));
-    result.anchors.push_back(anchors_of(*middle, result.points.back(), shape));
+    result.patches.push_back(patches_of(*middle, result.points.back(), shape));
   }
-  std::vector<float> mixed;
-  for (std::size_t i = 0; i < static_cast<std::size_t>(shape.queries); ++i) {
-    const auto& from = result.anchors[i % tooth_types];
-    mixed.insert(mixed.end(), from.begin() + static_cast<std::ptrdiff_t>(3 * i),
-                 from.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
+  ToothPatches mixed;
+  const auto each = std::ptrdiff_t{3} * shape.patch_points;
+  for (std::ptrdiff_t i = 0; i < shape.queries; ++i) {
+    const ToothPatches& from = result.patches[static_cast<std::size_t>(i % tooth_types)];
+    const auto copy = [&](const std::vector<float>& source, std::vector<float>& to) {
+      to.insert(to.end(), source.begin() + each * i, source.begin() + each * (i + 1));
+    };
+    copy(from.points, mixed.points);
+    copy(from.normals, mixed.normals);
   }
-  result.anchors.push_back(std::move(mixed));
+  result.patches.push_back(std::move(mixed));
   return result;
 }
 

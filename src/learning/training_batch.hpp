@@ -23,10 +23,16 @@ struct TrainingBatch {
 /// TrainingSample::matched, those of a patch side by side. Empty for a type without correspondence.
 using PointLayout = std::vector<std::int32_t>;
 
+/// The points that a type's output starts from: queries x patch_points x 3 numbers each.
+struct ToothPatches {
+  std::vector<float> points;
+  std::vector<float> normals;
+};
+
 /// What a network's queries start from.
 struct QueryLayout {
-  std::vector<std::vector<float>> anchors;  ///< per type and for "unknown" last: queries x 3 numbers
-  std::vector<PointLayout> points;          ///< per type
+  std::vector<ToothPatches> patches;  ///< per type and for "unknown" last
+  std::vector<PointLayout> points;    ///< per type
 };
 
 /// Throws InputError if a sample cannot be used: too few points, arrays of different lengths, values that are not
@@ -41,7 +47,7 @@ TrainingBatch make_training_batch(const SampleProvider& provider, const std::vec
 
 /// Starting points of the queries and, where samples have corresponding points, the layout of the output.
 /// Both are spread over a tooth of median depth among a type's first samples, three quarters of the queries on the root
-/// as far as there are points; the anchors of "unknown" are taken in turn from all types.
+/// as far as there are points; the patches of "unknown" are taken in turn from all types.
 QueryLayout initial_layout(const SampleProvider& provider, const CompletionShape& shape);
 
 }  // namespace rhizodont

@@ -6,6 +6,8 @@
 #include "rhizodont/complete.hpp"
 
 #include "completion/complete_points.hpp"
+#include "completion/steering.hpp"
+#include "completion/uncertainty.hpp"
 #include "fusion/fuse.hpp"
 #include "isosurface/guiding_surface.hpp"
 #include "mesh/closest_point.hpp"
@@ -40,6 +42,7 @@ void require_options_in_range(const CompleteOptions& options) {
   if (!(options.millimetres_per_unit > 0)) throw UsageError("The unit must be a positive number of millimetres.");
   if (options.threads < 0) throw UsageError("The number of threads cannot be negative.");
   if (options.fdi) tooth_type_of_fdi(*options.fdi);
+  require_steering_in_range(options.steering);
 }
 
 TriangleMesh scaled(TriangleMesh mesh, double factor) {
@@ -130,6 +133,21 @@ void note_lengths(const TriangleMesh& crown, const TriangleMesh& tooth, Completi
   record.tooth_length_mm = tooth_high - tooth_low;
 }
 
+/// How far new vertices and the root's length may be off. `tooth` in mm, the kept crown's vertices first.
+void note_uncertainty(const TriangleMesh& crown, const TriangleMesh& tooth, const PredictedTooth& predicted,
+                      const RootSteering& steering, CompletedTooth& completed) {
+  CompletionRecord& record = completed.record;
+  completed.uncertainty = expected_distances(tooth, crown, predicted, GuidingCloudOptions().correction_reach);
+  record.apex_expected_distance_mm = expected_distance_at_apex(predicted, record.growth_axis);
+  const std::optional<UncertaintyScales> scales = uncertainty_scales(record.model);
+  if (!scales) return;
+  for (double& u : completed.uncertainty) u *= scales->surface;
+  if (steering.any()) return;
+  const double s = record.apex_expected_distance_mm;
+  record.root_interval = {record.root_length_mm + scales->length_low * s,
+                          record.root_length_mm + scales->length_high * s, scales->apex * s};
+}
+
 /// The tooth in the input's unit: crown vertices are the input's own bits, new ones fit float where the input's do.
 TriangleMesh in_input_unit(const TriangleMesh& tooth, const TriangleMesh& input, const std::vector<int>& kept,
                            double millimetres_per_unit) {
@@ -177,11 +195,13 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   const CrownFrame frame = find_frame(crown.mesh, models.atlas, options, record);
   clock.begin("completion network");
   record.model = models.network.metadata();
-  const OrientedPoints predicted = complete_points(crown.mesh, record.fdi, frame.frame, models.network);
+  PredictedTooth predicted = complete_points(crown.mesh, record.fdi, frame.frame, models.network);
   clock.begin("orientation");
-  const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, predicted);
+  const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, predicted.cloud);
   clock.begin("guiding surface");
-  const TriangleMesh surface = build_guiding_surface(cloud, options.e);
+  TriangleMesh surface = build_guiding_surface(cloud, options.e);
+  for (std::vector<Point>* points : {&surface.vertices, &predicted.cloud.points})
+    steer_root(*points, crown.mesh, frame.frame, record.fdi, options.steering);
   note_guiding_distance(crown.mesh, surface, record);
 
   clock.begin("joining");
@@ -190,6 +210,7 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   const FusedTooth fused = fuse_crown_and_root(crown.mesh, surface, record.growth_axis, fuse);
   note_fusion(fused, record);
   note_lengths(crown.mesh, fused.tooth.mesh, record);
+  note_uncertainty(crown.mesh, fused.tooth.mesh, predicted, options.steering, tooth);
 
   clock.begin("check");
   tooth.mesh = in_input_unit(fused.tooth.mesh, input, crown.old_vertices, options.millimetres_per_unit);
@@ -215,6 +236,26 @@ CompletedTooth complete_tooth(const TriangleMesh& crown, const CompletionModels&
   CompletedTooth tooth = complete(crown, models.content(), options, clock);
   tooth.record.stages = clock.finish();
   return tooth;
+}
+
+std::vector<CompletedTooth> complete_candidates(const TriangleMesh& crown, const CompletionModels& models, int count,
+                                                const CompleteOptions& options, const ProgressCallback& progress) {
+  if (count < 1 || count > 9) throw UsageError("There can be 1 to 9 candidates.");
+  std::vector<CompletedTooth> candidates{complete_tooth(crown, models, options, progress)};
+  if (count == 1) return candidates;
+  const CompletionRecord& expected = candidates.front().record;
+  if (!expected.root_interval)
+    throw UsageError(options.steering.any() ? "Candidates differ in what steering sets: ask for one of the two."
+                                            : "Candidates need a completion network that was calibrated.");
+  const RootInterval interval = *expected.root_interval;
+  for (int i = 0; i + 1 < count; ++i) {
+    CompleteOptions of_this = options;
+    of_this.fdi = expected.fdi;
+    const double share = count == 2 ? 0 : static_cast<double>(i) / (count - 2);
+    of_this.steering.length_mm = std::lerp(interval.length_low_mm, interval.length_high_mm, share);
+    candidates.push_back(complete_tooth(crown, models, of_this, progress));
+  }
+  return candidates;
 }
 
 }  // namespace rhizodont

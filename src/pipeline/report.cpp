@@ -47,6 +47,28 @@ Json frame_json(const CompletionRecord& record) {
           {"distance_to_mean_crown_mm", record.type_residual_mm}};
 }
 
+Json root_json(const CompletionRecord& record) {
+  Json json{{"length_mm", record.root_length_mm},
+            {"tooth_length_mm", record.tooth_length_mm},
+            {"apex_expected_distance_mm", record.apex_expected_distance_mm},
+            {"interval", nullptr}};
+  if (const auto& interval = record.root_interval)
+    json["interval"] = {{"probability", 0.8},
+                        {"length_low_mm", interval->length_low_mm},
+                        {"length_high_mm", interval->length_high_mm},
+                        {"apex_radius_mm", interval->apex_radius_mm}};
+  return json;
+}
+
+Json steering_json(const RootSteering& steering) {
+  Json json{{"root_length_mm", nullptr},
+            {"tip_degrees", steering.tip_degrees},
+            {"torque_degrees", steering.torque_degrees},
+            {"bend_degrees", steering.bend_degrees}};
+  if (steering.length_mm) json["root_length_mm"] = *steering.length_mm;
+  return json;
+}
+
 Json joining_json(const CompletionRecord& record) {
   return {{"guiding_vertices", record.guiding_vertices},
           {"crown_to_guiding_surface_mean_mm", record.guiding_distance_mean},
@@ -80,11 +102,12 @@ std::string completion_report(const CompletedTooth& tooth, const CompleteOptions
         {"cap", options.cap == CapHandling::keep ? "keep" : "drop"},
         {"millimetres_per_unit", options.millimetres_per_unit},
         {"transition_mm", options.transition},
+        {"steering", steering_json(options.steering)},
         {"threads", options.threads}}},
       {"fdi", {{"number", record.fdi}, {"guessed", record.fdi_guessed}}},
       {"frame", frame_json(record)},
       {"crown", crown_json(record)},
-      {"root", {{"length_mm", record.root_length_mm}, {"tooth_length_mm", record.tooth_length_mm}}},
+      {"root", root_json(record)},
       {"joining", joining_json(record)},
       {"new_triangles", record.new_triangles},
       {"promises", record.promises},

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include <cmath>
 #include <numeric>
 #include <random>
 #include <set>
@@ -34,22 +35,25 @@ TEST(AdaPoinTr, Shapes) {
   const CompletionShape shape = testing::tiny_shape();
   AdaPoinTr network(shape);
   const TrainingBatch batch = tiny_batch();
-  const Prediction p = network->forward(batch.crowns, batch.target.seeds, Precision::single);
+  const Prediction p = network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
   EXPECT_EQ(p.coarse.sizes(), (torch::IntArrayRef{3, 24, 3}));
   EXPECT_EQ(p.fine.sizes(), (torch::IntArrayRef{3, 96, 3}));
   EXPECT_EQ(p.normals.sizes(), (torch::IntArrayRef{3, 96, 3}));
+  EXPECT_EQ(p.spread.sizes(), (torch::IntArrayRef{3, 96}));
   EXPECT_EQ(p.denoised.sizes(), (torch::IntArrayRef{3, 8, 4, 3}));
   EXPECT_TRUE(torch::allclose(p.normals.norm(2, -1), torch::ones({3, 96}), 0, 1e-3));
-  EXPECT_FALSE(network->forward(batch.crowns, {}, Precision::single).denoised.defined());
+  EXPECT_FALSE(network->forward(batch.crowns, {}, {}, Precision::single).denoised.defined());
 }
 
 TEST(AdaPoinTr, DenoisingQueriesDoNotLeak) {
   torch::manual_seed(2);
   AdaPoinTr network(testing::tiny_shape());
   const TrainingBatch batch = tiny_batch();
-  const Prediction with = network->forward(batch.crowns, batch.target.seeds, Precision::single);
-  const Prediction without = network->forward(batch.crowns, {}, Precision::single);
-  const Prediction moved = network->forward(batch.crowns, batch.target.seeds + 0.3, Precision::single);
+  const Prediction with =
+      network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
+  const Prediction without = network->forward(batch.crowns, {}, {}, Precision::single);
+  const Prediction moved =
+      network->forward(batch.crowns, batch.target.seeds + 0.3, batch.target.seed_patches, Precision::single);
   for (const auto& other : {without, moved}) {
     EXPECT_TRUE(torch::allclose(with.coarse, other.coarse, 0, 1e-5));
     EXPECT_TRUE(torch::allclose(with.fine, other.fine, 0, 1e-5));
@@ -62,8 +66,8 @@ TEST(AdaPoinTr, DenoisingQueriesDoNotLeak) {
 TEST(AdaPoinTr, SamplesOfABatchDoNotMix) {
   torch::manual_seed(3);
   AdaPoinTr network(testing::tiny_shape());
-  const Prediction together = network->forward(tiny_batch(3).crowns, {}, Precision::single);
-  const Prediction alone = network->forward(tiny_batch(1).crowns, {}, Precision::single);
+  const Prediction together = network->forward(tiny_batch(3).crowns, {}, {}, Precision::single);
+  const Prediction alone = network->forward(tiny_batch(1).crowns, {}, {}, Precision::single);
   EXPECT_TRUE(torch::allclose(together.fine[0], alone.fine[0], 0, 1e-5));
 }
 
@@ -74,13 +78,27 @@ TEST(AdaPoinTr, GradientReachesEveryParameter) {
   const TrainingOptions options = testing::tiny_options();
   const TrainingBatch batch = make_training_batch(testing::tiny_sample, tiny_layouts(), 0, 17, options, true);
   batch.crowns.types.copy_(torch::arange(17));
-  const Prediction p = network->forward(batch.crowns, batch.target.seeds, Precision::single);
+  const Prediction p = network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
   training_loss(p, batch.target, options).total.backward();
   for (const auto& item : network->named_parameters()) {
     ASSERT_TRUE(item.value().grad().defined()) << item.key();
     EXPECT_GT(item.value().grad().abs().max().item<double>(), 1e-9) << item.key();
   }
-  EXPECT_GT(std::get<0>(network->anchors.grad().abs().flatten(1).max(1)).min().item<double>(), 0);
+  EXPECT_GT(std::get<0>(network->patches.grad().abs().flatten(1).max(1)).min().item<double>(), 0);
+}
+
+TEST(AdaPoinTr, ExpectedDistancesMoveNothingElse) {
+  torch::manual_seed(4);
+  AdaPoinTr network(testing::tiny_shape());
+  const TrainingBatch batch = tiny_batch();
+  const Prediction p = network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
+  training_loss(p, batch.target, testing::tiny_options()).spread.backward();
+  for (const auto& item : network->named_parameters()) {
+    if (item.key().starts_with("head_spread"))
+      EXPECT_GT(item.value().grad().abs().max().item<double>(), 1e-9) << item.key();
+    else
+      EXPECT_FALSE(item.value().grad().defined()) << item.key();
+  }
 }
 
 TEST(AdaPoinTr, CrownsDoNotDependOnTheOrderOfTheirPoints) {
@@ -103,9 +121,9 @@ TEST(AdaPoinTr, TypeMatters) {
   AdaPoinTr network(testing::tiny_shape());
   TrainingBatch batch = tiny_batch(1);
   batch.crowns.types.fill_(2);
-  const torch::Tensor one = network->forward(batch.crowns, {}, Precision::single).coarse;
+  const torch::Tensor one = network->forward(batch.crowns, {}, {}, Precision::single).coarse;
   batch.crowns.types.fill_(unknown_type);
-  EXPECT_FALSE(torch::allclose(one, network->forward(batch.crowns, {}, Precision::single).coarse));
+  EXPECT_FALSE(torch::allclose(one, network->forward(batch.crowns, {}, {}, Precision::single).coarse));
 }
 
 TEST(AdaPoinTr, HalfPrecisionIsClose) {
@@ -113,8 +131,8 @@ TEST(AdaPoinTr, HalfPrecisionIsClose) {
   torch::manual_seed(6);
   AdaPoinTr network(testing::tiny_shape());
   const TrainingBatch batch = tiny_batch();
-  const torch::Tensor single = network->forward(batch.crowns, {}, Precision::single).fine;
-  const torch::Tensor half = network->forward(batch.crowns, {}, Precision::half).fine;
+  const torch::Tensor single = network->forward(batch.crowns, {}, {}, Precision::single).fine;
+  const torch::Tensor half = network->forward(batch.crowns, {}, {}, Precision::half).fine;
   EXPECT_LT((single - half).abs().max().item<double>(), 0.05);
 }
 
@@ -199,17 +217,47 @@ TEST(TrainingBatch, RefusesSamplesThatCannotBeUsed) {
   EXPECT_THROW(check_sample(bad, shape), InputError);
 }
 
-TEST(TrainingBatch, AnchorsLieOnTheTooth) {
+TEST(TrainingBatch, PatchesLieOnTheTooth) {
   const QueryLayout layout = initial_layout(testing::tiny_sample, testing::tiny_shape());
-  ASSERT_EQ(layout.anchors.size(), 17U);
+  ASSERT_EQ(layout.patches.size(), 17U);
   ASSERT_EQ(layout.points.size(), 16U);
-  for (const auto& xyz : layout.anchors) {
-    ASSERT_EQ(xyz.size(), 72U);
+  for (const ToothPatches& patches : layout.patches) {
+    ASSERT_EQ(patches.points.size(), 3U * 96);
+    ASSERT_EQ(patches.normals.size(), 3U * 96);
     int below = 0;
-    for (std::size_t i = 0; i < 24; ++i) below += xyz[3 * i + 2] < -0.2F;
-    EXPECT_GE(below, 10);
-    EXPECT_LT(below, 24);
+    for (std::size_t i = 0; i < 96; ++i) {
+      below += patches.points[3 * i + 2] < -0.2F;
+      EXPECT_NEAR(std::hypot(patches.normals[3 * i], patches.normals[3 * i + 1]), 1, 1e-5);
+    }
+    EXPECT_GE(below, 40);
+    EXPECT_LT(below, 96);
   }
+}
+
+TEST(AdaPoinTr, StartsFromTheTypesTooth) {
+  torch::manual_seed(11);
+  AdaPoinTr network(testing::tiny_shape());
+  const QueryLayout layout = initial_layout(testing::tiny_sample, testing::tiny_shape());
+  for (int type = 0; type <= unknown_type; ++type) {
+    const ToothPatches& patches = layout.patches[static_cast<std::size_t>(type)];
+    network->set_patches(type, patches.points, patches.normals);
+  }
+  EXPECT_THROW(network->set_patches(17, layout.patches[0].points, layout.patches[0].normals), UsageError);
+  EXPECT_THROW(network->set_patches(0, layout.patches[0].points, std::vector<float>(3)), UsageError);
+  const TrainingBatch batch = tiny_batch(1);
+  const Prediction p = network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
+  const auto type = batch.crowns.types[0].item<std::int64_t>();
+  // what an untrained head adds is small beside the tooth, once the bend of the queries is taken away
+  const torch::Tensor tooth = network->patches[type];
+  const torch::Tensor bend = (p.coarse[0] - tooth.mean(1)).unsqueeze(1);
+  EXPECT_LT((p.fine[0].view({24, 4, 3}) - tooth - bend).abs().max().item<double>(), 0.3);
+  EXPECT_GT((p.normals[0].view({24, 4, 3}) * network->patch_normals[type]).sum(-1).mean().item<double>(), 0.9);
+  // a seed brings its patch's points along
+  const torch::Tensor patch = batch.target.seed_patches[0];
+  ASSERT_GE(patch.min().item<std::int64_t>(), 0);
+  const torch::Tensor own = tooth.index_select(0, patch);
+  const torch::Tensor offsets = own - own.mean(1, true);
+  EXPECT_LT((p.denoised[0] - batch.target.seeds[0].unsqueeze(1) - offsets).abs().max().item<double>(), 0.3);
 }
 
 TEST(TrainingBatch, LayoutGroupsDistinctNeighbours) {

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "learning/optimiser.hpp"
 #include "rhizodont/error.hpp"
 
@@ -103,6 +105,7 @@ struct Truth {
     target.matched_root = target.root.clone();
     perfect.fine = target.points.clone();
     perfect.normals = target.normals.clone();
+    perfect.spread = torch::full({2, 40}, -3.0);
     // queries of two points each for the first sample, points of the target for the second
     perfect.coarse = target.points.view({2, 20, 2, 3}).mean(2);
     perfect.coarse[1].copy_(target.points[1].narrow(0, 0, 20));
@@ -155,6 +158,23 @@ TEST(Losses, MatchedRootPointsWeighThreefold) {
   EXPECT_NEAR(moved(30), 1.0 / 80, 2e-4);
 }
 
+TEST(Losses, ExpectedDistanceIsBestAtTheMeanDistance) {
+  const Truth truth;
+  // half of the first sample's points are 0.1 off, half 0.3; the second sample has no correspondence and no say
+  Prediction prediction = truth.perfect;
+  prediction.fine = truth.perfect.fine.clone();
+  prediction.fine[0].select(1, 0) += torch::where(torch::arange(40) < 20, 0.1, 0.3);
+  const auto cost = [&](double first, double second) {
+    prediction.spread =
+        torch::tensor({std::log(first), std::log(second)}).to(torch::kFloat).unsqueeze(1).expand({2, 40});
+    return truth.loss(prediction).spread.item<double>();
+  };
+  EXPECT_LT(cost(0.2, 1), cost(0.19, 1));
+  EXPECT_LT(cost(0.2, 1), cost(0.21, 1));
+  EXPECT_NEAR(cost(0.2, 1), 1 + std::log(0.2), 1e-3);
+  EXPECT_EQ(cost(0.2, 1), cost(0.2, 7));
+}
+
 TEST(Losses, DenoisingComparesInOrderWhereItIsKnown) {
   Truth truth;
   truth.target.denoise_target = torch::randn({2, 3, 4, 3});
@@ -171,7 +191,7 @@ TEST(Losses, GatherRows) {
   const torch::Tensor points = torch::arange(2 * 3 * 2, torch::kFloat).view({2, 3, 2});
   const torch::Tensor indices = torch::tensor({{2L, 0L}, {1L, 1L}});
   const torch::Tensor expected = torch::tensor({{{4.0F, 5.0F}, {0.0F, 1.0F}}, {{8.0F, 9.0F}, {8.0F, 9.0F}}});
-  EXPECT_TRUE(torch::equal(gather_rows(points, indices), expected));
+  EXPECT_TRUE(torch::equal(layers::gather_rows(points, indices), expected));
 }
 
 /// One parameter with the optimiser's state.

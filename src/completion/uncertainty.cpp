@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+//
+// H. Papadopoulos, K. Proedrou, V. Vovk, A. Gammerman, "Inductive confidence machines for regression", 2002: intervals
+// whose widths follow a predicted error and whose scale is a quantile on held-out samples.
+#include "completion/uncertainty.hpp"
+
+#include "mesh/closest_point.hpp"
+#include "mesh/nearest_vertex.hpp"
+#include "rhizodont/error.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace rhizodont {
+namespace {
+
+constexpr std::array<std::pair<const char*, double UncertaintyScales::*>, 4> fields{{
+    {"uncertainty.length_low", &UncertaintyScales::length_low},
+    {"uncertainty.length_high", &UncertaintyScales::length_high},
+    {"uncertainty.apex", &UncertaintyScales::apex},
+    {"uncertainty.surface", &UncertaintyScales::surface},
+}};
+
+}  // namespace
+
+std::optional<UncertaintyScales> uncertainty_scales(const std::map<std::string, std::string>& metadata) {
+  UncertaintyScales scales;
+  for (const auto& [name, member] : fields) {
+    const auto found = metadata.find(name);
+    if (found == metadata.end()) return std::nullopt;
+    try {
+      scales.*member = std::stod(found->second);
+    } catch (const std::logic_error&) {
+      throw InputError(fmt::format("The weight file's {} is not a number.", name));
+    }
+  }
+  return scales;
+}
+
+void note_uncertainty_scales(const UncertaintyScales& scales, std::map<std::string, std::string>& metadata) {
+  for (const auto& [name, member] : fields) metadata[name] = fmt::format("{:.4f}", scales.*member);
+}
+
+double expected_distance_at_apex(const PredictedTooth& predicted, const Eigen::Vector3d& growth_axis) {
+  constexpr std::size_t deepest = 16;
+  const std::vector<Point>& points = predicted.cloud.points;
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto last = order.begin() + deepest;
+  std::partial_sort(order.begin(), last, order.end(), [&](std::size_t a, std::size_t b) {
+    return points[a].dot(growth_axis) < points[b].dot(growth_axis);
+  });
+  return std::accumulate(order.begin(), last, 0.0,
+                         [&](double sum, std::size_t i) { return sum + predicted.expected_distance[i]; }) /
+         static_cast<double>(deepest);
+}
+
+std::vector<double> expected_distances(const TriangleMesh& tooth, const TriangleMesh& crown,
+                                       const PredictedTooth& predicted, double reach) {
+  constexpr std::size_t neighbours = 6;
+  const NearestVertexIndex points(predicted.cloud.points);
+  const ClosestPointIndex surface(crown);
+  std::vector<double> result(tooth.vertices.size(), 0.0);
+  tbb::parallel_for(crown.vertices.size(), tooth.vertices.size(), [&](std::size_t v) {
+    double sum = 0;
+    for (const NearVertex& near : points.nearest(tooth.vertices[v], neighbours))
+      sum += predicted.expected_distance[static_cast<std::size_t>(near.index)];
+    const double away = surface.closest(tooth.vertices[v]).distance / reach;
+    result[v] = sum / neighbours * (1 - std::exp(-away * away));
+  });
+  return result;
+}
+
+}  // namespace rhizodont

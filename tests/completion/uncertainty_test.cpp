@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "completion/uncertainty.hpp"
+
+#include <gtest/gtest.h>
+
+#include "rhizodont/error.hpp"
+
+namespace rhizodont {
+namespace {
+
+PredictedTooth column() {
+  PredictedTooth predicted;
+  for (int i = 0; i < 100; ++i) {
+    predicted.cloud.points.emplace_back(0.01 * (i % 7), 0, -0.1 * i);
+    predicted.cloud.normals.emplace_back(1, 0, 0);
+    predicted.expected_distance.push_back(i < 84 ? 0.5 : 2.0);
+  }
+  return predicted;
+}
+
+TEST(Uncertainty, ApexIsTheMeanOfTheDeepestPoints) {
+  const PredictedTooth predicted = column();
+  EXPECT_NEAR(expected_distance_at_apex(predicted, Eigen::Vector3d::UnitZ()), 2.0, 1e-12);
+  EXPECT_NEAR(expected_distance_at_apex(predicted, -Eigen::Vector3d::UnitZ()), 0.5, 1e-12);
+}
+
+TEST(Uncertainty, NoneOnTheCrownAndTheNetworksFarFromIt) {
+  TriangleMesh crown;
+  crown.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  crown.triangles = {{0, 1, 2}};
+  TriangleMesh tooth = crown;
+  tooth.vertices.emplace_back(0, 0, -0.1);
+  tooth.vertices.emplace_back(0, 0, -5);
+  tooth.vertices.emplace_back(0, 0, -9.9);
+  const auto u = expected_distances(tooth, crown, column(), 2.0);
+  ASSERT_EQ(u.size(), 6U);
+  for (int v = 0; v < 3; ++v) EXPECT_EQ(u[static_cast<std::size_t>(v)], 0);
+  EXPECT_GT(u[3], 0);
+  EXPECT_LT(u[3], 0.01);
+  EXPECT_NEAR(u[4], 0.5, 1e-2);
+  EXPECT_NEAR(u[5], 2.0, 1e-6);
+}
+
+TEST(Uncertainty, ScalesGoThroughTheWeightFile) {
+  std::map<std::string, std::string> metadata;
+  EXPECT_FALSE(uncertainty_scales(metadata));
+  note_uncertainty_scales({-1.25, 0.75, 1.5, 0.4}, metadata);
+  const auto scales = uncertainty_scales(metadata);
+  ASSERT_TRUE(scales);
+  EXPECT_EQ(scales->length_low, -1.25);
+  EXPECT_EQ(scales->length_high, 0.75);
+  EXPECT_EQ(scales->apex, 1.5);
+  EXPECT_EQ(scales->surface, 0.4);
+  metadata["uncertainty.apex"] = "much";
+  EXPECT_THROW(uncertainty_scales(metadata), InputError);
+}
+
+}  // namespace
+}  // namespace rhizodont
