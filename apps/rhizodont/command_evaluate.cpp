@@ -1,10 +1,13 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "commands.hpp"
+#include "evaluation/calibration.hpp"
 #include "evaluation/evaluate_cases.hpp"
+#include "evaluation/evaluation_plot.hpp"
 #include "evaluation/template_predictor.hpp"
 #include "json_option.hpp"
 #include "learning/blas.hpp"
+#include "learning/safetensors.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -21,7 +24,7 @@ namespace rhizodont::command_line {
 namespace {
 
 struct EvaluateCommand {
-  std::string cases, templates, models, csv;
+  std::string cases, templates, models, csv, plot, calibrate;
   JsonOption json;
   CompleteOptions options;
 };
@@ -33,13 +36,15 @@ NamedPredictor rhizodont_predictor(const EvaluateCommand& command) {
   return {"rhizodont", [models, options = command.options](const TriangleMesh& crown, int fdi) {
             CompleteOptions of_this = options;
             of_this.fdi = fdi;
-            return complete_tooth(crown, *models, of_this).mesh;
+            const CompletedTooth tooth = complete_tooth(crown, *models, of_this);
+            return ToothPrediction{tooth.mesh, tooth.record.root_interval, tooth.record.apex_expected_distance_mm,
+                                   tooth.uncertainty};
           }};
 }
 
 NamedPredictor template_predictor(const std::string& folder) {
   return {"template", [folder](const TriangleMesh& crown, int fdi) {
-            return fit_template(crown, load_template_tooth(folder, fdi));
+            return ToothPrediction{fit_template(crown, load_template_tooth(folder, fdi)), {}, 0, {}};
           }};
 }
 
@@ -95,10 +100,21 @@ void print_means(const Evaluation& evaluation) {
     for (std::size_t p = 0; p < names.size(); ++p)
       print_mean("mean", names[p], mean_figures(evaluation, p, MeanOver::completed_by_all));
   }
+  for (const auto& [type, part] : split_by_type(evaluation))
+    if (part.cases.size() > 2)
+      for (std::size_t p = 0; p < names.size(); ++p) print_mean(type.c_str(), names[p], mean_figures(part, p));
   for (std::size_t p = 0; p < names.size(); ++p) {
     const MeanFigures means = mean_figures(evaluation, p);
     fmt::print("{}: {} of {} teeth completed, bias of the root's length {:+.2f} mm\n", names[p], means.teeth,
                evaluation.cases.size(), means.root_length_bias_mm);
+    if (means.furcations > 0)
+      fmt::print("{}: height of the furcation off by {:.2f} mm (mean of {} teeth)\n", names[p],
+                 means.furcation_height_error_mm, means.furcations);
+    if (const Coverage c = coverage(evaluation, p); c.teeth > 0)
+      fmt::print(
+          "{}: intervals of 80 % hold {:.0f} % of the root lengths (mean width {:.1f} mm) and {:.0f} % of the "
+          "apices\n",
+          names[p], 100 * c.length, c.interval_width_mm, 100 * c.apex);
   }
 }
 
@@ -114,6 +130,18 @@ void print_table(const Evaluation& evaluation) {
       "below the crown's\nlowest point. H 95 %: Hausdorff distance, 95th percentile. Axis angle in degrees. Chamfer L2 "
       "and F at 1 %: whole tooth, in units\nof the diagonal of its bounding box.\n");
   fmt::print("{}\n", describe(CbctNoise{}));
+}
+
+/// Writes the scales that these teeth call for into the weight file with which they were completed.
+void calibrate_weights(const EvaluateCommand& command, const Evaluation& evaluation) {
+  TensorFile weights = read_safetensors(command.calibrate);
+  const UncertaintyScales used = uncertainty_scales(weights.metadata).value_or(UncertaintyScales{0, 0, 0, 1});
+  const UncertaintyScales scales = calibrate(evaluation, 0, used);
+  note_uncertainty_scales(scales, weights.metadata);
+  weights.metadata["uncertainty.teeth"] = std::to_string(mean_figures(evaluation, 0).teeth);
+  write_safetensors(command.calibrate, weights);
+  fmt::print("{}: root length {:+.2f} to {:+.2f}, apex {:.2f}, surface {:.2f} times the expected distance\n",
+             command.calibrate, scales.length_low, scales.length_high, scales.apex, scales.surface);
 }
 
 void run(const EvaluateCommand& command) {
@@ -132,6 +160,8 @@ void run(const EvaluateCommand& command) {
   if (command.json.wants_table()) print_table(*evaluation);
   command.json.write(*evaluation);
   if (!command.csv.empty()) write_file_atomically(command.csv, evaluation_csv(*evaluation));
+  if (!command.plot.empty()) write_file_atomically(command.plot, root_length_plot(*evaluation));
+  if (!command.calibrate.empty()) calibrate_weights(command, *evaluation);
   if (evaluation->has_failures()) exit_with(static_cast<int>(ErrorCode::no_result));
 }
 
@@ -141,7 +171,8 @@ void add_evaluate_command(CLI::App& app) {
   auto command = std::make_shared<EvaluateCommand>();
   CLI::App* evaluate = app.add_subcommand(
       "evaluate", "Complete crowns whose whole teeth are known and measure how far the roots are off (exit 0 or 4)");
-  evaluate->add_option("CASES_DIR", command->cases, "Folder with crown_FDI and tooth_FDI meshes in mm")->required();
+  evaluate->add_option("CASES_DIR", command->cases, "Folder with crown_FDI and tooth_FDI (or _FDI_NAME) meshes in mm")
+      ->required();
   evaluate->add_option("--templates", command->templates,
                        "Folder with tooth_FDI.ply of the left side: the simple predictor's figures stand beside");
   evaluate->add_option("--e", command->options.e, "Side of the lattice in mm, 0.2 to 2")->capture_default_str();
@@ -149,6 +180,11 @@ void add_evaluate_command(CLI::App& app) {
       ->capture_default_str();
   evaluate->add_option("--models", command->models, "Folder with completion.safetensors and atlas.safetensors");
   evaluate->add_option("--csv", command->csv, "Write one line per tooth and predictor to this file");
+  evaluate->add_option("--plot", command->plot, "Draw predicted against true root lengths to this SVG file");
+  evaluate->add_option(
+      "--calibrate", command->calibrate,
+      "Scale the intervals in this weight file (--models' completion.safetensors) to these teeth, which "
+      "must not have been trained on");
   command->json.add_to(*evaluate);
   evaluate->callback([command] { run(*command); });
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evaluation/evaluate_cases.hpp"
 
+#include "mesh/closest_point.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
@@ -25,8 +26,10 @@ bool is_mesh_file(const std::filesystem::path& file) {
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
+/// "36" or "36_anything".
 bool is_permanent_tooth(std::string_view number) {
-  return number.size() == 2 && number[0] >= '1' && number[0] <= '4' && number[1] >= '1' && number[1] <= '8';
+  return number.size() >= 2 && (number.size() == 2 || number[2] == '_') && number[0] >= '1' && number[0] <= '4' &&
+         number[1] >= '1' && number[1] <= '8';
 }
 
 /// Mesh files prefix_NUMBER.extension of a folder by NUMBER.
@@ -49,15 +52,38 @@ bool completed_by_all(const EvaluatedCase& evaluated) {
                      [](const CaseOutcome& outcome) { return outcome.figures.has_value(); });
 }
 
+UncertaintyFigures uncertainty_figures(const ToothPrediction& tooth, const TriangleMesh& truth,
+                                       const RootFigures& figures) {
+  UncertaintyFigures result;
+  result.interval = tooth.interval;
+  result.apex_expected_distance_mm = tooth.apex_expected_distance_mm;
+  result.length_mm = figures.true_root_length_mm + figures.root_length_error_mm;
+  result.apex_distance_mm = figures.apex_distance_mm;
+  for (const ApexPair& pair : figures.matched_apices)
+    if (pair.predicted == 0) result.apex_distance_mm = pair.distance_mm;
+  const ClosestPointIndex surface(truth);
+  int count = 0;
+  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v) {
+    if (tooth.uncertainty[v] <= 0) continue;
+    ++count;
+    result.uncertainty_mm += tooth.uncertainty[v];
+    result.surface_distance_mm += surface.closest(tooth.mesh.vertices[v]).distance;
+  }
+  result.uncertainty_mm /= std::max(count, 1);
+  result.surface_distance_mm /= std::max(count, 1);
+  return result;
+}
+
 CaseOutcome evaluate(const NamedPredictor& predictor, int fdi, const TriangleMesh& crown, const TriangleMesh& truth,
                      const RootFigureOptions& options) {
   CaseOutcome outcome;
   try {
     const Eigen::Vector3d axis = crown_growth_axis(crown);
     const auto start = std::chrono::steady_clock::now();
-    const TriangleMesh tooth = predictor.predict(crown, fdi);
+    const ToothPrediction tooth = predictor.predict(crown, fdi);
     outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    outcome.figures = root_figures(crown, truth, tooth, axis, options);
+    outcome.figures = root_figures(crown, truth, tooth.mesh, axis, options);
+    if (!tooth.uncertainty.empty()) outcome.uncertainty = uncertainty_figures(tooth, truth, *outcome.figures);
   } catch (const UsageError&) {
     throw;
   } catch (const std::exception& error) {
@@ -80,7 +106,7 @@ std::vector<EvaluationCase> find_evaluation_cases(const std::filesystem::path& f
     if (tooth == teeth.end())
       throw InputError("The crown " + crown.filename().string() + " has no whole tooth tooth_" + number +
                        " beside it.");
-    cases.push_back({std::stoi(number), crown, tooth->second});
+    cases.push_back({std::stoi(number.substr(0, 2)), number.size() > 3 ? number.substr(3) : "", crown, tooth->second});
   }
   return cases;
 }
@@ -103,7 +129,7 @@ Evaluation evaluate_cases(const std::vector<EvaluationCase>& cases, const std::v
     }
     for (const NamedPredictor& predictor : predictors) {
       if (!unreadable.empty()) {
-        evaluated.outcomes.push_back({std::nullopt, unreadable, 0});
+        evaluated.outcomes.push_back({std::nullopt, std::nullopt, unreadable, 0});
         continue;
       }
       if (progress) progress(cases[i], i, predictor.name);
@@ -130,14 +156,31 @@ MeanFigures mean_figures(const Evaluation& evaluation, std::size_t predictor, Me
     means.root_axis_angle_deg += figures->root_axis_angle_deg;
     means.chamfer_l2_e3 += figures->chamfer_l2_e3;
     means.f_score += figures->f_score;
+    if (figures->furcation_height_error_mm) {
+      ++means.furcations;
+      means.furcation_height_error_mm += std::abs(*figures->furcation_height_error_mm);
+    }
     means.right_root_counts += figures->true_apices.size() == figures->predicted_apices.size() ? 1 : 0;
   }
+  if (means.furcations > 0) means.furcation_height_error_mm /= means.furcations;
   if (means.teeth == 0) return means;
   for (double* sum : {&means.root_length_abs_error_mm, &means.root_length_bias_mm, &means.apex_distance_mm,
                       &means.matched_apex_distance_mm, &means.root_chamfer_mm, &means.root_f_score,
                       &means.root_hausdorff95_mm, &means.root_axis_angle_deg, &means.chamfer_l2_e3, &means.f_score})
     *sum /= means.teeth;
   return means;
+}
+
+std::vector<std::pair<std::string, Evaluation>> split_by_type(const Evaluation& evaluation) {
+  std::map<std::pair<bool, int>, Evaluation> parts;
+  for (const EvaluatedCase& evaluated : evaluation.cases)
+    parts[{evaluated.files.fdi >= 30, evaluated.files.fdi % 10}].cases.push_back(evaluated);
+  std::vector<std::pair<std::string, Evaluation>> result;
+  for (auto& [type, part] : parts) {
+    part.predictors = evaluation.predictors;
+    result.emplace_back((type.first ? "lower " : "upper ") + std::to_string(type.second), std::move(part));
+  }
+  return result;
 }
 
 }  // namespace rhizodont

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "evaluation/root_figures.hpp"
+#include "rhizodont/complete.hpp"
 #include "rhizodont/mesh.hpp"
 
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rhizodont {
@@ -19,27 +21,47 @@ namespace rhizodont {
 /// A crown whose whole tooth is known.
 struct EvaluationCase {
   int fdi = 0;                         ///< 11-18, 21-28, 31-38, 41-48
+  std::string name;                    ///< what tells it from others with that number; may be empty
   std::filesystem::path crown, truth;  ///< mesh files, mm
 };
 
-/// All pairs crown_FDI and tooth_FDI (.ply, .stl, .obj, .off, .vtp) of a folder, by FDI number. Throws InputError if
-/// the folder cannot be read or has no crown, if a crown has no tooth or no permanent tooth's number, or if two files
-/// stand for the same.
+/// All pairs crown_FDI and tooth_FDI, or crown_FDI_NAME and tooth_FDI_NAME (.ply, .stl, .obj, .off, .vtp) of a folder,
+/// by FDI number and name. Throws InputError if the folder cannot be read or has no crown, if a crown has no tooth or
+/// no permanent tooth's number, or if two files stand for the same.
 std::vector<EvaluationCase> find_evaluation_cases(const std::filesystem::path& folder);
 
+/// A whole tooth and, from predictors that know, how sure they are of it.
+struct ToothPrediction {
+  TriangleMesh mesh;                     ///< mm
+  std::optional<RootInterval> interval;  ///< 80 %
+  double apex_expected_distance_mm = 0;  ///< before calibration; 0: the predictor does not say
+  std::vector<double> uncertainty;       ///< mm per vertex, 0 on the crown; empty: the predictor does not say
+};
+
 /// Crown (mm) and FDI number to a whole tooth in the same place. May throw any error.
-using ToothPredictor = std::function<TriangleMesh(const TriangleMesh& crown, int fdi)>;
+using ToothPredictor = std::function<ToothPrediction(const TriangleMesh& crown, int fdi)>;
 
 struct NamedPredictor {
   std::string name;
   ToothPredictor predict;
 };
 
+/// What a predictor said about its own error, and what the error was.
+struct UncertaintyFigures {
+  std::optional<RootInterval> interval;
+  double apex_expected_distance_mm = 0;
+  double length_mm = 0;            ///< of the predicted root
+  double apex_distance_mm = 0;     ///< of the deepest predicted apex from the true one that is matched to it
+  double uncertainty_mm = 0;       ///< mean over the new vertices
+  double surface_distance_mm = 0;  ///< mean distance of the new vertices from the true surface
+};
+
 /// What became of one crown in the hands of one predictor.
 struct CaseOutcome {
   std::optional<RootFigures> figures;
-  std::string failure;  ///< a sentence why there are no figures; empty where there are
-  double seconds = 0;   ///< of the prediction alone
+  std::optional<UncertaintyFigures> uncertainty;  ///< of predictors that say how sure they are
+  std::string failure;                            ///< a sentence why there are no figures; empty where there are
+  double seconds = 0;                             ///< of the prediction alone
 };
 
 struct EvaluatedCase {
@@ -73,13 +95,19 @@ struct MeanFigures {
   double apex_distance_mm = 0, matched_apex_distance_mm = 0;
   double root_chamfer_mm = 0, root_f_score = 0, root_hausdorff95_mm = 0, root_axis_angle_deg = 0;
   double chamfer_l2_e3 = 0, f_score = 0;
-  int right_root_counts = 0;  ///< teeth with as many roots as the true tooth
+  int right_root_counts = 0;             ///< teeth with as many roots as the true tooth
+  int furcations = 0;                    ///< teeth with several roots, true and predicted
+  double furcation_height_error_mm = 0;  ///< mean of absolute values over these
 };
 
 /// Which teeth means are taken over: those that this predictor completed, or those that every predictor did, so that
 /// one that leaves out what is difficult does not seem better.
 enum class MeanOver { completed, completed_by_all };
 MeanFigures mean_figures(const Evaluation& evaluation, std::size_t predictor, MeanOver over = MeanOver::completed);
+
+/// The same teeth by type, "upper 1" to "lower 8", left and right together; in that order, types without teeth left
+/// out.
+std::vector<std::pair<std::string, Evaluation>> split_by_type(const Evaluation& evaluation);
 
 /// What cone-beam computed tomography itself can tell about a root, beside which every error must be seen.
 struct CbctNoise {

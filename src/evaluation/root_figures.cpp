@@ -111,6 +111,17 @@ Eigen::Vector3d root_axis(std::vector<Point> root, const Eigen::Vector3d& axis) 
   return mean_of(root.begin(), root.begin() + half) - mean_of(root.begin() + half, root.end());
 }
 
+/// Height along the axis of the highest furcation; nothing for a tooth with one root. The deepest apex, which comes
+/// first, climbs to the level where roots were looked for.
+std::optional<double> furcation_height(const std::vector<RootApex>& apices, const Eigen::Vector3d& axis) {
+  std::optional<double> highest;
+  for (std::size_t i = 1; i < apices.size(); ++i) {
+    const double height = apices[i].point.dot(axis) + apices[i].prominence_mm;
+    highest = std::max(highest.value_or(height), height);
+  }
+  return highest;
+}
+
 double angle_degrees(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
 }
@@ -143,6 +154,9 @@ void compare_apices(const TriangleMesh& truth, const TriangleMesh& predicted, co
   figures.true_apices = root_apices(truth, axis, level, options.least_prominence_mm);
   figures.predicted_apices = root_apices(predicted, axis, level, options.least_prominence_mm);
   figures.matched_apices = match_apices(figures.true_apices, figures.predicted_apices);
+  const auto true_furcation = furcation_height(figures.true_apices, axis);
+  const auto predicted_furcation = furcation_height(figures.predicted_apices, axis);
+  if (true_furcation && predicted_furcation) figures.furcation_height_error_mm = *predicted_furcation - *true_furcation;
   figures.matched_apex_distance_mm = figures.apex_distance_mm;
   if (figures.matched_apices.empty()) return;
   double sum = 0;

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace rhizodont {
@@ -29,6 +30,9 @@ struct RootFigures {
   std::vector<RootApex> true_apices, predicted_apices;  ///< deepest first; as many as the tooth has roots
   std::vector<ApexPair> matched_apices;                 ///< by true apex
   double matched_apex_distance_mm = 0;                  ///< mean over the pairs; apex_distance_mm where there is none
+
+  /// Predicted minus true height of the highest furcation along the axis; where both teeth have several roots.
+  std::optional<double> furcation_height_error_mm;
 
   double root_chamfer_mm = 0;      ///< mean of the two mean distances, each from one root's points to the other's
   double root_f_score = 0;         ///< [0, 1], at root_threshold_mm

@@ -40,7 +40,7 @@ class EvaluateCases : public testing::Test {
 };
 
 NamedPredictor always(const TriangleMesh& tooth) {
-  return {"always", [tooth](const TriangleMesh&, int) { return tooth; }};
+  return {"always", [tooth](const TriangleMesh&, int) { return ToothPrediction{tooth, {}, 0, {}}; }};
 }
 
 TEST_F(EvaluateCases, FindsPairsByNumber) {
@@ -52,6 +52,18 @@ TEST_F(EvaluateCases, FindsPairsByNumber) {
   EXPECT_EQ(cases[0].fdi, 11);
   EXPECT_EQ(cases[1].fdi, 46);
   EXPECT_EQ(cases[1].truth.filename(), "tooth_46.ply");
+}
+
+TEST_F(EvaluateCases, SeveralTeethOfANumberHaveNames) {
+  write_case("36_old", test::two_rooted());
+  write_case("36_young", test::two_rooted());
+  const auto cases = find_evaluation_cases(folder_);
+  ASSERT_EQ(cases.size(), 2u);
+  EXPECT_EQ(cases[0].fdi, 36);
+  EXPECT_EQ(cases[0].name, "old");
+  EXPECT_EQ(cases[1].truth.filename(), "tooth_36_young.ply");
+  write_case("367", test::one_rooted());
+  EXPECT_THROW(find_evaluation_cases(folder_), InputError);
 }
 
 TEST_F(EvaluateCases, FolderThatIsNoSetOfCasesIsRefused) {
@@ -73,9 +85,9 @@ TEST_F(EvaluateCases, FailuresAreRowsWithAReason) {
   write_case("36", test::two_rooted());
   std::ofstream(folder_ / "crown_21.ply") << "ply\nformat nonsense";
   write("tooth_21.ply", test::one_rooted());
-  const NamedPredictor picky{"picky", [](const TriangleMesh&, int fdi) -> TriangleMesh {
+  const NamedPredictor picky{"picky", [](const TriangleMesh&, int fdi) -> ToothPrediction {
                                if (fdi == 36) throw NoResultError("molars are too hard");
-                               return test::one_rooted();
+                               return {test::one_rooted(), {}, 0, {}};
                              }};
   std::vector<std::string> progress;
   const Evaluation evaluation =
@@ -99,7 +111,7 @@ TEST_F(EvaluateCases, FailuresAreRowsWithAReason) {
             evaluation.cases[0].outcomes[1].figures->apex_distance_mm);
   const std::string csv = evaluation_csv(evaluation);
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 7);
-  EXPECT_NE(csv.find("36,\"picky\",,,,,,,,,,,,,,\"molars are too hard\""), std::string::npos);
+  EXPECT_NE(csv.find("36,\"\",\"picky\",,,,,,,,,,,,,,,\"molars are too hard\""), std::string::npos);
   const std::string header = csv.substr(0, csv.find('\n')),
                     row = csv.substr(header.size() + 1, csv.find('\n', header.size() + 1) - header.size() - 1);
   EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
@@ -113,8 +125,8 @@ TEST_F(EvaluateCases, FailuresAreRowsWithAReason) {
 
 TEST_F(EvaluateCases, WrongUsageIsNotARow) {
   write_case("11", test::one_rooted());
-  const NamedPredictor misused{"misused",
-                               [](const TriangleMesh&, int) -> TriangleMesh { throw UsageError("e is out of range"); }};
+  const NamedPredictor misused{
+      "misused", [](const TriangleMesh&, int) -> ToothPrediction { throw UsageError("e is out of range"); }};
   EXPECT_THROW(evaluate_cases(find_evaluation_cases(folder_), {misused}), UsageError);
 }
 
@@ -127,7 +139,7 @@ TEST_F(EvaluateCases, MeansTakeAbsoluteLengthErrors) {
     figures.apex_distance_mm = 2 + error;
     figures.true_apices.resize(2);
     figures.predicted_apices.resize(error > 0 ? 2 : 1);
-    evaluation.cases.push_back({{}, {{figures, "", 0}}});
+    evaluation.cases.push_back({{}, {{figures, std::nullopt, "", 0}}});
   }
   const MeanFigures means = mean_figures(evaluation, 0);
   EXPECT_EQ(means.teeth, 2);

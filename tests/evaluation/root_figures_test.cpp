@@ -175,6 +175,19 @@ TEST(RootApices, EachStandsForTheNearestWhateverTheirDepth) {
   EXPECT_NEAR(f.matched_apex_distance_mm, 0.6, 0.1);
 }
 
+TEST(RootFigures, FurcationHeightIsWhereRootsMeet) {
+  const TriangleMesh tooth = test::tooth_with_roots({{-2.2, 0, 8}, {2.2, 0, 7.6}});
+  const RootFigures same = root_figures(crown_of(tooth), tooth, tooth, up);
+  ASSERT_TRUE(same.furcation_height_error_mm);
+  EXPECT_EQ(*same.furcation_height_error_mm, 0);
+  // what lies below the crown made longer by 1.5 mm at the apex takes the furcation down by less
+  const TriangleMesh longer = lengthened(tooth, crown_level(crown_of(tooth)), 1.5);
+  const RootFigures moved = root_figures(crown_of(tooth), tooth, longer, up);
+  EXPECT_LT(*moved.furcation_height_error_mm, -0.01);
+  EXPECT_GT(*moved.furcation_height_error_mm, -1.5);
+  EXPECT_FALSE(root_figures(crown_of(tooth), tooth, one_rooted(), up).furcation_height_error_mm);
+}
+
 TEST(RootApices, MissingRootShowsInTheCount) {
   const RootFigures f = root_figures(crown_of(two_rooted()), two_rooted(), one_rooted(), up);
   EXPECT_EQ(f.true_apices.size(), 2u);
