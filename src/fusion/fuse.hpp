@@ -3,8 +3,9 @@
 #pragma once
 
 #include "fusion/join.hpp"
-#include "fusion/remesh_band.hpp"
+#include "fusion/remesh_root.hpp"
 #include "fusion/restore.hpp"
+#include "fusion/root_sites.hpp"
 #include "fusion/separate.hpp"
 #include "fusion/transition.hpp"
 
@@ -14,29 +15,37 @@
 namespace rhizodont {
 
 struct FuseOptions {
+  double edge_growth = 0.5;      ///< > 0: how fast edges grow with the distance from a short border edge
+  double edge_shrinkage = 0.15;  ///< > 0: how fast they shrink from a long one
   SeparationOptions separation;
+  RootSitesOptions sites;
   JoinOptions join;
   RestoreOptions restore;
-  RemeshBandOptions remesh;
+  RemeshRootOptions remesh;
   TransitionOptions transition;
-  int attempts = 4;  ///< >= 1: each starts the root farther from the crown's border than the one before
+  int attempts = 4;         ///< >= 1: each starts the root farther from the crown's border than the one before
+  int remesh_attempts = 4;  ///< >= 1: each leaves more of the triangles alone where the one before made the tooth cut
+                            ///< itself
 };
 
 /// A closed tooth made of the crown and the guiding surface's root, with what the steps on the way did.
 struct FusedTooth {
   RestoredTooth tooth;
-  Separation separation;
+  RootRemeshing remeshing;
   Transition transition;
-  int crown_triangles_direct = 0;  ///< crown triangles that the dual of the restricted Voronoi diagram gave directly
-  int steiner_points = 0;          ///< that made the crown a Delaunay mesh; none is left in the tooth
+  int root_sites = 0;               ///< root vertices that the dual was taken of
+  int crown_triangles_direct = 0;   ///< crown triangles that the dual of the restricted Voronoi diagram gave directly
+  int steiner_points = 0;           ///< that made the crown a Delaunay mesh; none is left in the tooth
+  int non_delaunay_edges_left = 0;  ///< of the crown in spite of them
+  int sites_without_cell = 0;       ///< sites that the guiding surface does not come near
   std::vector<std::string> warnings;
 };
 
-/// Joins crown and guiding surface: separate, join by the restricted Voronoi diagram, restore the crown, remesh and
-/// smooth the transition. Every step's result is tested for self-intersection; a step that would break the tooth is
-/// left out and said in the warnings. If no closed tooth comes out, the root is started farther from the crown. `crown`
-/// is open, manifold, one component, its border loops not touching; `growth_axis` a unit vector to the crown. Throws
-/// NoResultError where no attempt gives a closed tooth.
+/// Joins crown and guiding surface: separate, choose root vertices, join by the restricted Voronoi diagram, restore the
+/// crown, improve the root's triangles and smooth the transition. Every result is tested for self-intersection; a step
+/// that would break the tooth is left out and said in the warnings. If no closed tooth comes out, the root is started
+/// farther from the crown. `crown` is open, manifold, one component, its border loops not touching; `growth_axis` a
+/// unit vector to the crown. Throws InputError for a closed crown, NoResultError where no attempt gives a closed tooth.
 FusedTooth fuse_crown_and_root(const TriangleMesh& crown, const TriangleMesh& guiding_surface,
                                const Eigen::Vector3d& growth_axis, const FuseOptions& options = {});
 

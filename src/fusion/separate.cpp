@@ -8,17 +8,15 @@
 
 #include "fusion/separate.hpp"
 
-#include "fusion/crown_border.hpp"
-#include "mesh/closest_point.hpp"
 #include "rhizodont/error.hpp"
 
-#include <algorithm>
+#include <utility>
 
 namespace rhizodont {
 namespace {
 
-/// Keeps the vertices connected to `seed` through edges between marked vertices; returns how many were unmarked.
-int keep_connected(const TriangleMesh& surface, int seed, std::vector<bool>& marked) {
+/// Keeps the marks of the vertices connected to `seed` through edges between marked vertices.
+void keep_connected(const TriangleMesh& surface, int seed, std::vector<bool>& marked) {
   std::vector<std::vector<int>> around(surface.vertices.size());
   for (const Triangle& t : surface.triangles)
     for (std::size_t i = 0; i < 3; ++i) around[static_cast<std::size_t>(t[i])].push_back(t[(i + 1) % 3]);
@@ -34,41 +32,28 @@ int keep_connected(const TriangleMesh& surface, int seed, std::vector<bool>& mar
       stack.push_back(w);
     }
   }
-  int dropped = 0;
-  for (std::size_t v = 0; v < marked.size(); ++v) {
-    if (!marked[v] || reached[v]) continue;
-    marked[v] = false;
-    ++dropped;
-  }
-  return dropped;
+  marked = std::move(reached);
 }
 
 }  // namespace
 
-Separation separate_crown_and_root(const TriangleMesh& guiding_surface, const TriangleMesh& crown,
-                                   const Eigen::Vector3d& growth_axis, const SeparationOptions& options) {
-  const CrownBorder border = find_crown_border(crown);
-  const ClosestPointIndex index(crown);
-  const double clearance = options.clearance * border.mean_edge;
-  Separation result;
-  result.is_root.resize(guiding_surface.vertices.size());
+std::vector<bool> separate_crown_and_root(const TriangleMesh& guiding_surface, const CrownDistances& distances,
+                                          const Eigen::Vector3d& growth_axis, const SeparationOptions& options) {
+  std::vector<bool> is_root(guiding_surface.vertices.size());
   int lowest = -1;
   double lowest_height = 0;
   for (std::size_t v = 0; v < guiding_surface.vertices.size(); ++v) {
-    const Point& p = guiding_surface.vertices[v];
-    const ClosestPoint closest = index.closest(p);
-    const bool beyond_border = closest.distance > clearance && lies_on_border(crown, border, closest);
-    result.is_root[v] = closest.distance > options.epsilon || beyond_border;
-    if (!result.is_root[v]) continue;
-    const double height = p.dot(growth_axis);
+    const double distance = distances.distance[v];
+    is_root[v] = distance > options.epsilon || (distance > options.clearance && distances.closest_on_border[v]);
+    if (!is_root[v]) continue;
+    const double height = guiding_surface.vertices[v].dot(growth_axis);
     if (lowest >= 0 && height >= lowest_height) continue;
     lowest = static_cast<int>(v);
     lowest_height = height;
   }
   if (lowest < 0) throw NoResultError("No root was found: the predicted tooth does not reach beyond the crown.");
-  result.islands_dropped = keep_connected(guiding_surface, lowest, result.is_root);
-  result.root_vertices = static_cast<int>(std::count(result.is_root.begin(), result.is_root.end(), true));
-  return result;
+  keep_connected(guiding_surface, lowest, is_root);
+  return is_root;
 }
 
 }  // namespace rhizodont

@@ -1,11 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "fusion/join.hpp"
-#include "fusion/remesh_band.hpp"
-#include "fusion/restore.hpp"
-#include "fusion/separate.hpp"
-#include "fusion/transition.hpp"
+#include "fusion/fuse.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
@@ -35,13 +31,6 @@ TriangleMesh part(const TriangleMesh& mesh, const std::function<bool(const Point
   return submesh(mesh, mask).mesh;
 }
 
-std::vector<Point> root_points(const TriangleMesh& surface, const Separation& separation) {
-  std::vector<Point> points;
-  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
-    if (separation.is_root[v]) points.push_back(surface.vertices[v]);
-  return points;
-}
-
 /// A turned copy of a sphere's triangulation, so that guiding surface and crown share no vertex.
 TriangleMesh turned(TriangleMesh mesh) {
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.37, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -50,12 +39,7 @@ TriangleMesh turned(TriangleMesh mesh) {
 }
 
 RestoredTooth complete(const TriangleMesh& crown, const TriangleMesh& surface, const Eigen::Vector3d& axis) {
-  const Separation separation = separate_crown_and_root(surface, crown, axis);
-  const Joining joining = join_crown_and_root(crown, root_points(surface, separation), surface);
-  RestoredTooth tooth = restore_crown(crown, joining);
-  remesh_band(tooth);
-  smooth_transition(tooth);
-  return tooth;
+  return fuse_crown_and_root(crown, surface, axis).tooth;
 }
 
 void expect_promises(const TriangleMesh& crown, const RestoredTooth& tooth) {
@@ -96,7 +80,7 @@ TEST(Fusion, RaggedBorder) {
 
 TEST(Fusion, ClosedCrownIsRefused) {
   const TriangleMesh ball = test::sphere(3, 5);
-  EXPECT_THROW(separate_crown_and_root(ball, ball, Eigen::Vector3d::UnitZ()), InputError);
+  EXPECT_THROW(fuse_crown_and_root(ball, ball, Eigen::Vector3d::UnitZ()), InputError);
 }
 
 TEST(Fusion, ValidationCrownsOnTheirOwnTeeth) {

@@ -1,0 +1,161 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "fusion/mend_angles.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+namespace rhizodont {
+namespace {
+
+constexpr double worthwhile = 1e-3;  // radians by which an operation has to improve the smallest angle
+
+class Mender {
+ public:
+  explicit Mender(FittedPatch& patch) : patch_(patch) {}
+
+  /// Works on the triangles with an angle below the bound, worst first; returns the number of operations.
+  int round(double bound) {
+    std::vector<std::pair<double, int>> bad;
+    for (int h = 0; h < mesh().half_edges(); h += 3) {
+      if (!mesh().is_alive(h)) continue;
+      const double angle = patch_.smallest_angle_at(h);
+      if (angle < bound) bad.emplace_back(angle, h);
+    }
+    std::sort(bad.begin(), bad.end());
+    int done = 0;
+    for (const auto& [angle, h] : bad)
+      if (mesh().is_alive(h) && patch_.smallest_angle_at(h) < bound && improve(h)) ++done;
+    return done;
+  }
+
+ private:
+  const PatchMesh& mesh() const { return patch_.mesh(); }
+
+  bool improve(int h) {
+    return improve_by_flip(h) || improve_by_collapse(h) || improve_by_moves(h) || improve_by_split(h);
+  }
+
+  double smallest_around(int v) const {
+    double smallest = 4;
+    mesh().around(v, [&](int h) { smallest = std::min(smallest, patch_.smallest_angle_at(h)); });
+    return smallest;
+  }
+
+  /// Gain in smallest angle that turning the edge would bring; negative if it cannot be turned.
+  double flip_gain(int h) const {
+    if (!patch_.can_flip(h)) return -1;
+    const int g = mesh().opposite(h);
+    const Point &a = patch_.point(mesh().from(h)), &b = patch_.point(mesh().to(h));
+    const Point &c = patch_.point(mesh().apex(h)), &d = patch_.point(mesh().apex(g));
+    const double before = std::min(smallest_angle(a, b, c), smallest_angle(b, a, d));
+    return std::min(smallest_angle(d, c, a), smallest_angle(c, d, b)) - before;
+  }
+
+  bool improve_by_flip(int h) {
+    int best = -1;
+    double best_gain = worthwhile;
+    for (const int k : {h, PatchMesh::next(h), PatchMesh::previous(h)}) {
+      const double gain = flip_gain(k);
+      if (gain <= best_gain) continue;
+      best = k;
+      best_gain = gain;
+    }
+    if (best >= 0) patch_.flip(best);
+    return best >= 0;
+  }
+
+  bool improve_by_collapse(int h) {
+    int best = -1;
+    double best_gain = worthwhile;
+    for (const int k : {h, PatchMesh::next(h), PatchMesh::previous(h)})
+      for (const int way : {k, mesh().opposite(k)}) {
+        double after = 0;
+        if (way < 0 || patch_.relative_length(way) > 1 || !patch_.can_collapse(way, after)) continue;
+        const double gain = after - smallest_around(mesh().from(way));
+        if (gain <= best_gain) continue;
+        best = way;
+        best_gain = gain;
+      }
+    if (best >= 0) patch_.collapse(best);
+    return best >= 0;
+  }
+
+  /// Moves a free corner of the triangle to the best of a few places about it.
+  bool improve_by_moves(int h) {
+    bool moved = false;
+    for (const int k : {h, PatchMesh::next(h), PatchMesh::previous(h)}) {
+      const int v = mesh().from(k);
+      if (mesh().is_fixed(v)) continue;
+      for (double step = 0.4; step > 0.03; step *= 0.5)
+        while (improve_by_move(v, step * patch_.size(v))) moved = true;
+    }
+    return moved;
+  }
+
+  bool improve_by_move(int v, double step) {
+    const double before = smallest_around(v);
+    SurfacePlace best;
+    double best_angle = before + worthwhile;
+    // The edges of v serve as directions; they and their opposites cover the tangent plane.
+    const Point here = patch_.point(v);
+    const std::vector<int> neighbours = mesh().neighbours(v);
+    for (const int w : neighbours)
+      for (const double sign : {1.0, -1.0}) {
+        const Eigen::Vector3d along = patch_.point(w) - here;
+        const double length = along.norm();
+        if (!(length > 0)) continue;
+        const SurfacePlace place = patch_.fit(v, here + sign * std::min(step / length, 0.5) * along);
+        double smallest = 4;
+        mesh().around(v, [&](int k) {
+          smallest =
+              std::min(smallest, smallest_angle(place.point, patch_.point(mesh().to(k)), patch_.point(mesh().apex(k))));
+        });
+        if (smallest <= best_angle || !patch_.can_move(v, place)) continue;
+        best_angle = smallest;
+        best = place;
+      }
+    if (best.triangle < 0) return false;
+    patch_.move(v, best);
+    return true;
+  }
+
+  /// Splits the longest interior edge if that makes the smallest angle larger once edges around are turned.
+  bool improve_by_split(int h) {
+    int longest = -1;
+    double length = 0;
+    for (const int k : {h, PatchMesh::next(h), PatchMesh::previous(h)}) {
+      const double l = (patch_.point(mesh().from(k)) - patch_.point(mesh().to(k))).norm();
+      if (l <= length) continue;
+      longest = k;
+      length = l;
+    }
+    if (mesh().opposite(longest) < 0 || !patch_.can_split(longest)) return false;
+    const bool between_fixed = mesh().is_fixed(mesh().from(longest)) && mesh().is_fixed(mesh().to(longest));
+    if (!between_fixed && patch_.relative_length(longest) < 1.2) return false;
+    patch_.split(longest);
+    return true;
+  }
+
+  FittedPatch& patch_;
+};
+
+}  // namespace
+
+int mend_angles(FittedPatch& patch, double least_angle, int rounds) {
+  Mender mender(patch);
+  int done = 0;
+  for (int round = 0; round < rounds; ++round) {
+    const int now = mender.round(least_angle);
+    done += now;
+    if (now == 0) break;
+  }
+  return done;
+}
+
+}  // namespace rhizodont

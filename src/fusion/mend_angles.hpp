@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "fusion/fitted_patch.hpp"
+
+namespace rhizodont {
+
+/// Takes away small angles by local operations: an edge is turned, collapsed or split, or a vertex moved, wherever that
+/// makes the smallest angle of the triangles concerned larger. `least_angle` in radians: triangles that have a smaller
+/// one are worked on. Returns the number of operations.
+int mend_angles(FittedPatch& patch, double least_angle, int rounds);
+
+}  // namespace rhizodont

@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// L. Chen, "Mesh smoothing schemes based on optimal Delaunay triangulations", 2004: a vertex moves to the mean of the
+//   circumcentres around it, weighted by area and density; next to centroidal Voronoi diagrams this avoids slivers.
+// M. Botsch and L. Kobbelt, "A remeshing approach to multiresolution modeling", 2004: split, collapse, flip, relax.
+
+#include "fusion/remesh_root.hpp"
+
+#include "fusion/fitted_patch.hpp"
+#include "fusion/mend_angles.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <numbers>
+
+namespace rhizodont {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Opposite angles sum to more than pi.
+bool is_not_delaunay(const FittedPatch& patch, int h) {
+  const PatchMesh& mesh = patch.mesh();
+  const Point &a = patch.point(mesh.from(h)), &b = patch.point(mesh.to(h));
+  const Point &c = patch.point(mesh.apex(h)), &d = patch.point(mesh.apex(mesh.opposite(h)));
+  const Eigen::Vector3d ca = a - c, cb = b - c, da = a - d, db = b - d;
+  const double cos_c = ca.dot(cb), sin_c = ca.cross(cb).norm();
+  const double cos_d = da.dot(db), sin_d = da.cross(db).norm();
+  const double slack = 1e-9 * (std::abs(sin_c * cos_d) + std::abs(cos_c * sin_d));
+  return sin_c * cos_d + cos_c * sin_d < -slack;
+}
+
+int flip_to_delaunay(FittedPatch& patch) {
+  const PatchMesh& mesh = patch.mesh();
+  std::vector<int> stack;
+  std::vector<char> waits(at(mesh.half_edges()), 0);
+  const auto push = [&](int h) {
+    if (mesh.opposite(h) < 0 || waits[at(h)]) return;
+    waits[at(h)] = 1;
+    stack.push_back(h);
+  };
+  for (int h = 0; h < mesh.half_edges(); ++h)
+    if (mesh.is_alive(h) && mesh.opposite(h) > h) push(h);
+  // On a bent surface flips need not come to an end.
+  std::size_t allowed = 10 * stack.size();
+  int flips = 0;
+  while (!stack.empty() && allowed-- > 0) {
+    const int h = stack.back();
+    stack.pop_back();
+    waits[at(h)] = 0;
+    if (mesh.opposite(h) < 0 || !is_not_delaunay(patch, h) || !patch.can_flip(h)) continue;
+    patch.flip(h);
+    ++flips;
+    for (const int k : {h, mesh.opposite(h)}) {
+      push(PatchMesh::next(k));
+      push(PatchMesh::previous(k));
+    }
+  }
+  return flips;
+}
+
+int split_long_edges(FittedPatch& patch, double longest) {
+  int splits = 0;
+  const int end = patch.mesh().half_edges();
+  for (int h = 0; h < end; ++h) {
+    if (!patch.mesh().is_alive(h) || patch.mesh().opposite(h) < h) continue;
+    if (patch.relative_length(h) <= longest || !patch.can_split(h)) continue;
+    patch.split(h);
+    ++splits;
+  }
+  return splits;
+}
+
+int collapse_short_edges(FittedPatch& patch, double shortest) {
+  int collapses = 0;
+  double smallest = 0;
+  for (int h = 0; h < patch.mesh().half_edges(); ++h) {
+    if (!patch.mesh().is_alive(h) || patch.mesh().opposite(h) < 0) continue;
+    if (patch.relative_length(h) >= shortest || !patch.can_collapse(h, smallest)) continue;
+    patch.collapse(h);
+    ++collapses;
+  }
+  return collapses;
+}
+
+/// The circumcentre, or where the angle opposite to the longest side is obtuse, the middle of that side.
+Point bounded_circumcentre(const Point& a, const Point& b, const Point& c) {
+  const double la = (b - c).squaredNorm(), lb = (c - a).squaredNorm(), lc = (a - b).squaredNorm();
+  const double wa = la * (lb + lc - la), wb = lb * (lc + la - lb), wc = lc * (la + lb - lc);
+  if (wa <= 0) return 0.5 * (b + c);
+  if (wb <= 0) return 0.5 * (c + a);
+  if (wc <= 0) return 0.5 * (a + b);
+  return (wa * a + wb * b + wc * c) / (wa + wb + wc);
+}
+
+void relax(FittedPatch& patch) {
+  const PatchMesh& mesh = patch.mesh();
+  std::vector<Point> sum(mesh.points.size(), Point::Zero());
+  std::vector<double> weight(mesh.points.size(), 0);
+  for (int h = 0; h < mesh.half_edges(); h += 3) {
+    if (!mesh.is_alive(h)) continue;
+    const std::array<int, 3> v{mesh.from(h), mesh.from(h + 1), mesh.from(h + 2)};
+    const Point &a = patch.point(v[0]), &b = patch.point(v[1]), &c = patch.point(v[2]);
+    const double size = (patch.size(v[0]) + patch.size(v[1]) + patch.size(v[2])) / 3;
+    const double w = (b - a).cross(c - a).norm() / std::pow(size, 4);
+    const Point centre = bounded_circumcentre(a, b, c);
+    for (const int i : v) {
+      sum[at(i)] += w * centre;
+      weight[at(i)] += w;
+    }
+  }
+  for (int v = mesh.fixed_vertices(); v < static_cast<int>(mesh.points.size()); ++v) {
+    if (mesh.leaving(v) < 0 || !(weight[at(v)] > 0)) continue;
+    const SurfacePlace place = patch.fit(v, sum[at(v)] / weight[at(v)]);
+    if (patch.can_move(v, place)) patch.move(v, place);
+  }
+}
+
+}  // namespace
+
+RootRemeshing remesh_root(RestoredTooth& tooth, const SurfaceWalk& guiding_surface, const EdgeLengths& lengths,
+                          const std::vector<Point>& frozen_centres, double frozen_radius,
+                          const RemeshRootOptions& options) {
+  FittedPatch patch(tooth, guiding_surface, lengths);
+  patch.freeze(frozen_centres, frozen_radius);
+  RootRemeshing done;
+  for (int i = 0; i < options.iterations; ++i) {
+    if (i < (options.iterations + 1) / 2) {
+      done.splits += split_long_edges(patch, options.longest);
+      done.collapses += collapse_short_edges(patch, options.shortest);
+    }
+    done.flips += flip_to_delaunay(patch);
+    patch.renew_offsets(options.fading);
+    relax(patch);
+    patch.renew_sizes();
+  }
+  done.flips += flip_to_delaunay(patch);
+  done.mended = mend_angles(patch, options.least_angle * std::numbers::pi / 180, options.mending_rounds);
+  tooth.mesh = patch.tooth(tooth);
+  return done;
+}
+
+}  // namespace rhizodont

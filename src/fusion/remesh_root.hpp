@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "fusion/edge_lengths.hpp"
+#include "fusion/restore.hpp"
+#include "fusion/surface_walk.hpp"
+
+#include <vector>
+
+namespace rhizodont {
+
+struct RemeshRootOptions {
+  int iterations = 10;      ///< >= 0: of relaxation
+  double longest = 1.6;     ///< > 1: edges longer than this, relative to the length wanted there, are split
+  double shortest = 0.5;    ///< (0, 1): shorter ones are collapsed
+  double fading = 0.75;     ///< mm, > 0: over which the offset between the crown's border and the guiding surface fades
+  double least_angle = 28;  ///< degrees, [0, 30]: triangles with a smaller one are mended
+  int mending_rounds = 8;   ///< >= 0
+};
+
+/// What was done to the root's triangles.
+struct RootRemeshing {
+  int splits = 0;
+  int collapses = 0;
+  int flips = 0;
+  int mended = 0;  ///< operations that took away small angles
+};
+
+RootRemeshing remesh_root(RestoredTooth& tooth, const SurfaceWalk& guiding_surface, const EdgeLengths& lengths,
+                          const std::vector<Point>& frozen_centres, double frozen_radius,
+                          const RemeshRootOptions& options = {});
+
+}  // namespace rhizodont
