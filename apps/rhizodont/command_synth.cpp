@@ -123,15 +123,57 @@ void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
   write_file_atomically(command.sheet, encode_png(render(items, options)));
 }
 
+// Tiles of a picture whose rows are teeth and whose columns are views, set side by side: `per_row` teeth to a row.
+Image side_by_side(const Image& tall, std::size_t teeth, std::size_t per_row) {
+  const std::size_t height = static_cast<std::size_t>(tall.height) / teeth;
+  const std::size_t bytes = 3 * static_cast<std::size_t>(tall.width), rows = (teeth + per_row - 1) / per_row;
+  Image wide;
+  wide.width = tall.width * static_cast<int>(per_row);
+  wide.height = static_cast<int>(height * rows);
+  wide.rgb.assign(bytes * per_row * height * rows, 255);
+  for (std::size_t i = 0; i < teeth; ++i)
+    for (std::size_t y = 0; y < height; ++y)
+      std::copy_n(tall.rgb.begin() + static_cast<std::ptrdiff_t>((i * height + y) * bytes), bytes,
+                  wide.rgb.begin() +
+                      static_cast<std::ptrdiff_t>((((i / per_row) * height + y) * per_row + i % per_row) * bytes));
+  return wide;
+}
+
+/// `count` teeth of every type (or of one), a row for each type, from the cheek's side, from the side and from above.
+void write_contact_sheet(const SynthCommand& command, const ToothFamilies& families) {
+  const auto count = static_cast<std::size_t>(command.count);
+  std::vector<int> types;
+  for (int type = 0; type < tooth_type_count; ++type)
+    if (command.fdi == 0 || type == tooth_type_of_fdi(command.fdi)) types.push_back(type);
+  std::vector<MeshFile> teeth;
+  for (int type : types) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const SyntheticTooth tooth = generate_tooth(families, type, command.seed + i);
+      teeth.push_back(tooth_file(tooth, crop(command, tooth, command.seed + i).line, false));
+    }
+  }
+  RenderOptions options;
+  options.width = 110;
+  options.height = 190;
+  options.views = {"back", "right", "top"};
+  std::vector<RenderItem> items;
+  for (const MeshFile& tooth : teeth)
+    items.push_back({&tooth.mesh, colours_by_source(tooth.mesh, tooth.vertex_attributes.at(source_attribute).values),
+                     Eigen::Vector3d::UnitZ().eval()});
+  write_file_atomically(command.sheet, encode_png(side_by_side(render(items, options), items.size(), count)));
+  fmt::print("{}\n", command.sheet);
+}
+
 void run(const SynthCommand& command) {
-  if (command.output.empty() && command.atlas.empty())
-    throw UsageError("Say where to: -o FOLDER for teeth, --atlas FILE for mean crowns.");
+  if (command.output.empty() && command.atlas.empty() && command.sheet.empty())
+    throw UsageError("Say where to: -o FOLDER for teeth, --sheet PNG for a picture, --atlas FILE for mean crowns.");
   if (!command.output.empty() && command.fdi == 0) throw UsageError("Say which tooth: --type FDI, such as 36.");
   FamilyLoadOptions options;
   if (command.edge_mm > 0) options.vertices = 20000;  // finer than the scan to be made
   const ToothFamilies families = load_tooth_families(command.data, options);
   if (!command.atlas.empty()) write_atlas(command, families);
   if (!command.output.empty()) write_teeth(command, families);
+  if (command.output.empty() && !command.sheet.empty()) write_contact_sheet(command, families);
 }
 
 }  // namespace
@@ -139,7 +181,8 @@ void run(const SynthCommand& command) {
 void add_synth_command(CLI::App& app) {
   auto command = std::make_shared<SynthCommand>();
   CLI::App* synth = app.add_subcommand("synth", "Make complete synthetic teeth, crowns cut from them, and the atlas");
-  synth->add_option("--data", command->data, "Folder with templates/tooth_FDI.ply and anatomy.csv")->required();
+  synth->add_option("--data", command->data, "Folder with templates/tooth_FDI.ply, anatomy.csv and crowns/ssm")
+      ->required();
   synth->add_option("--type", command->fdi, "FDI number of the tooth to make (11-18, 21-28, 31-38, 41-48)");
   synth->add_option("--count", command->count, "How many")->capture_default_str()->check(CLI::Range(1, 100000));
   synth->add_option("--seed", command->seed, "Number of the first; each tooth depends on its number alone")
@@ -155,7 +198,8 @@ void add_synth_command(CLI::App& app) {
   synth->add_option("--noise", command->noise_mm, "Noise of remeshed crowns along their normals, mm")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 0.1));
-  synth->add_option("--sheet", command->sheet, "Draw what was made to this PNG");
+  synth->add_option("--sheet", command->sheet,
+                    "Draw what was made to this PNG; without -o: a contact sheet, --count teeth of each type");
   synth->add_option("--atlas", command->atlas, "Write mean crowns and anchors of all types to this safetensors file");
   synth->callback([command] { run(*command); });
 }

@@ -1,11 +1,9 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "atlas/completion_sample.hpp"
-#include "atlas/random_stream.hpp"
 #include "commands.hpp"
 #include "learning/blas.hpp"
 #include "learning/train_completion.hpp"
-#include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
 #include <fmt/chrono.h>
@@ -15,7 +13,6 @@
 #include <ctime>
 #include <fstream>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 namespace rhizodont::command_line {
@@ -35,25 +32,6 @@ std::vector<Eigen::Vector3f> to_points(const std::vector<float>& xyz) {
   return points;
 }
 
-/// Adds the generated tooth's vertices, which correspond wherever a type's own template was bent and not a borrowed
-/// one.
-void add_matches(const ToothFamilies& families, const CompletionSample& sample, std::uint64_t seed,
-                 TrainingSample& result) {
-  RandomStream random(seed, 100);  // as in make_completion_sample: the type, then the tooth
-  random.bits();
-  const SyntheticTooth tooth = generate_tooth(families, sample.type, random.bits());
-  const Point apex = sample.frame.to_canonical(tooth.apices.at(0));
-  if (sample.apices.empty() || (apex - sample.apices[0]).norm() > 1e-9)
-    throw std::logic_error("the generated tooth is not the sample's");
-  if (tooth.mesh.triangles != families.templates[static_cast<std::size_t>(sample.type)].mesh.triangles) return;
-  const std::vector<Eigen::Vector3d> normals = vertex_normals(tooth.mesh);
-  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v) {
-    result.matched.push_back(sample.frame.to_canonical(tooth.mesh.vertices[v]).cast<float>());
-    result.matched_normals.push_back(sample.frame.direction_to_canonical(normals[v]).cast<float>());
-    result.matched_root.push_back(tooth.crown[v] != 0 ? 0 : 1);
-  }
-}
-
 TrainingSample make_sample(const ToothFamilies& families, std::uint64_t seed, const CompletionSampleOptions& options) {
   const CompletionSample sample = make_completion_sample(families, seed, options);
   TrainingSample result;
@@ -62,7 +40,9 @@ TrainingSample make_sample(const ToothFamilies& families, std::uint64_t seed, co
   result.normals = to_points(sample.target_normals);
   result.is_root = sample.target_root;
   result.type = sample.type;
-  add_matches(families, sample, seed, result);
+  result.matched = to_points(sample.matched);
+  result.matched_normals = to_points(sample.matched_normals);
+  result.matched_root = sample.matched_root;
   return result;
 }
 
@@ -116,14 +96,16 @@ Teeth made on the fly by the project's generator (`src/atlas`): 16 permanent typ
 The generator draws on these sources, and training on nothing else:
 - "Permanent Teeth", University of Dundee School of Dentistry (E. McDougall, A. Mason, M. Roughley), CC BY 4.0: 16
   complete template teeth, scaled, bent and warped by the generator;
+- the statistical crown models (mean and modes of about 95 people's crowns, 28 tooth numbers) of Chen Y. et al.,
+  "Automatic 3D Teeth Reconstruction from Five Intra-oral Photos Using Parametric Teeth Model", 2023 (MIT), which give
+  the generated crowns their forms;
 - mean tooth dimensions after Wheeler and Ash and Nelson (facts); crowns are 2 % larger than these, a rough reading of
-  the statistical crown models of Chen et al., "Automatic 3D Teeth Reconstruction from Five Intra-oral Photos Using
-  Parametric Teeth Model", 2023 (MIT).
+  the crown models.
 
-No scan of a patient was trained on. Two settings of the generator were chosen after the validation crowns' sizes and cuts had been
+No single scan of a patient was trained on. Two settings of the generator were chosen after the validation crowns' sizes and cuts had been
 seen: the crowns' size above, and how far flat cuts lean (9 degrees). Their roots were used for nothing but evaluation.
 
-The weights are derived from these templates: keep the attribution when you pass them on.
+The weights are derived from these templates and crown models: keep the attribution when you pass them on.
 
 ## Training
 `rhizodont train --data DATA --out training/run1 --seed {4}`, {5} samples in {6} steps; settings in
@@ -166,7 +148,7 @@ void add_train_command(CLI::App& app) {
   auto command = std::make_shared<TrainCommand>();
   TrainingOptions& o = command->options;
   CLI::App* train_app = app.add_subcommand("train", "Train the completion network on generated teeth");
-  auto* data = train_app->add_option("--data", command->data, "Folder with templates/ and anatomy.csv");
+  auto* data = train_app->add_option("--data", command->data, "Folder with templates/, anatomy.csv and crowns/ssm/");
   train_app->add_option("--out", o.folder, "Folder of checkpoints and best weights")->required();
   train_app->add_flag("--resume", o.resume, "Go on from the folder's checkpoint");
   train_app->add_option("--samples", o.samples, "Samples in all; the learning rate falls until there")

@@ -5,7 +5,6 @@
 // Topology", 3.3, with crops, noise and frames as they are at inference.
 #include "atlas/completion_sample.hpp"
 
-#include "atlas/crown_crop.hpp"
 #include "atlas/random_stream.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
@@ -109,6 +108,16 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
     sample.target_cement.push_back(p.z() > tooth.junction(p.x(), p.y()) ? 0 : 1);
   }
 
+  if (tooth.own_template) {
+    sample.matched.reserve(3 * normals.size());
+    sample.matched_normals.reserve(3 * normals.size());
+    for (std::size_t v = 0; v < normals.size(); ++v) {
+      append(sample.matched, sample.frame.to_canonical(tooth.mesh.vertices[v]));
+      append(sample.matched_normals, sample.frame.direction_to_canonical(normals[v]));
+      sample.matched_root.push_back(tooth.crown[v] != 0 ? 0 : 1);
+    }
+  }
+
   double low = std::numeric_limits<double>::max(), high = -low, deepest = low;
   for (const Point& p : crop.mesh.vertices) {
     const double z = sample.frame.to_canonical(p).z();
@@ -118,6 +127,12 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
   sample.root_length_mm = (low - deepest) * sample.frame.scale;
   sample.crown_height_mm = (high - low) * sample.frame.scale;
   for (const Point& p : tooth.apices) sample.apices.push_back(sample.frame.to_canonical(p));
+  for (const Eigen::Vector3d& axis : tooth.root_axes)
+    sample.root_axes.push_back(sample.frame.direction_to_canonical(axis));
+  sample.growth_axis = sample.frame.direction_to_canonical(tooth.growth_axis);
+  sample.junction = tooth.junction;
+  sample.gum_line = crop.line;
+  sample.furcation_z = tooth.furcation_z;
   return sample;
 }
 

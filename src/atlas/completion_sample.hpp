@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "atlas/crown_crop.hpp"
 #include "atlas/tooth_family.hpp"
 #include "completion/frame.hpp"
 
@@ -32,11 +33,21 @@ struct CompletionSample {
   std::vector<float> target_normals;        ///< target_points x 3, unit length, outward
   std::vector<std::uint8_t> target_root;    ///< target_points; 1 where the point lies outside the crop (not seen)
   std::vector<std::uint8_t> target_cement;  ///< target_points; 1 where the point lies on cementum (below the junction)
-  int type = 0;                             ///< tooth type 0..15
-  CanonicalFrame frame;                     ///< from the generated tooth's millimetres to the canonical pose
+  /// The generated tooth's vertices, n x 3, if it was grown from its type's own template: the same row is the same
+  /// place on all such teeth of a type. Empty for teeth from a borrowed template.
+  std::vector<float> matched;
+  std::vector<float> matched_normals;      ///< n x 3, unit length, outward
+  std::vector<std::uint8_t> matched_root;  ///< n; 1 on cementum, 0 on enamel
+  int type = 0;                            ///< tooth type 0..15
+  CanonicalFrame frame;                    ///< from the generated tooth's millimetres to the canonical pose
   double root_length_mm = 0;   ///< lowest border point of the crop to the furthest apex along z, millimetres
   double crown_height_mm = 0;  ///< extent of the crop along z, millimetres
   std::vector<Point> apices;   ///< root tips in canonical coordinates, 1 to 3
+  std::vector<Eigen::Vector3d> root_axes;  ///< unit, from each tip to where its root branches off, canonical
+  Eigen::Vector3d growth_axis{0, 0, 1};    ///< the tooth's own, unit, canonical; differs from z by the tilt of the cut
+  JunctionHeight junction;                 ///< cemento-enamel junction in the generated tooth's millimetres
+  GumLine gum_line;                        ///< where the crown was cut, in the generated tooth's millimetres
+  double furcation_z = 0;                  ///< height of the highest branching there; 0 for a single root
 };
 
 /// Makes training sample number `seed`: a random tooth of a random type, cropped and disturbed like a scan.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Reads the templates and the table of mean dimensions (Wheeler; Ash and Nelson, "Wheeler's Dental Anatomy").
+#include "atlas/self_crossing.hpp"
 #include "atlas/tooth_family.hpp"
 #include "atlas/tooth_template.hpp"
 #include "mesh/geometry.hpp"
@@ -19,6 +20,7 @@
 #include <numeric>
 #include <sstream>
 #include <string>
+#include <utility>
 
 namespace rhizodont {
 namespace {
@@ -120,6 +122,99 @@ void measure_turns(ToothFamilies& families) {
   });
 }
 
+// How far templates are brought towards the mean crown of their type's model: most of the way; what is left of their
+// own form has finer grooves than a mean can have.
+constexpr double template_share = 0.8;
+
+void measure_crown(FamilyTemplate& tooth) {
+  Eigen::AlignedBox3d crown;
+  for (std::size_t v = 0; v < tooth.crown.size(); ++v)
+    if (tooth.crown[v] == 1) crown.extend(tooth.mesh.vertices[v]);
+  tooth.crown_height = crown.max().z();
+  tooth.crown_width = crown.sizes().head<2>();
+}
+
+// Moves the template's crown towards the mean of its models; less where it would run into itself.
+void approach_mean(FamilyTemplate& tooth, std::vector<FamilyCrownModel*> models) {
+  const std::vector<Point> before = tooth.mesh.vertices;
+  double share = template_share;
+  for (int attempt = 0; attempt < 5; ++attempt, share *= 0.7) {
+    for (std::size_t v = 0; v < before.size(); ++v) {
+      Eigen::Vector3f shift = Eigen::Vector3f::Zero();
+      for (const FamilyCrownModel* model : models)
+        shift += model->modes.mean_shift.segment<3>(static_cast<Eigen::Index>(3 * v));
+      tooth.mesh.vertices[v] = before[v] + share / static_cast<double>(models.size()) * shift.cast<double>();
+    }
+    if (crosses_itself(tooth.mesh)) continue;
+    for (FamilyCrownModel* model : models) model->template_share = share;
+    measure_crown(tooth);
+    return;
+  }
+  tooth.mesh.vertices = before;
+}
+
+// The statistical crown models of a folder on the loaded templates. A third molar's template takes those of the second
+// molar, for there are none of third molars; a second molar's lent to a third molar keeps its own.
+class CrownModelLoader {
+ public:
+  CrownModelLoader(ToothFamilies& families, std::filesystem::path folder, std::size_t mode_count,
+                   const std::array<Eigen::Vector3d, tooth_type_count>& buccal)
+      : families_(families), folder_(std::move(folder)), mode_count_(mode_count), buccal_(buccal) {}
+
+  void load(const std::vector<int>& types) {
+    if (mode_count_ == 0 || !std::filesystem::exists(folder_)) return;
+    std::vector<std::pair<int, int>> pairs;
+    for (int type : types) pairs.emplace_back(type, type);
+    add(pairs);
+    for (int type : types) {
+      std::vector<FamilyCrownModel*> models;
+      if (type % 8 == 7) continue;
+      for (FamilyCrownModel& model : families_.crown_models)
+        if (model.type == type) models.push_back(&model);
+      approach_mean(families_.templates[static_cast<std::size_t>(type)], models);
+    }
+    pairs.clear();
+    for (const TemplateLoan& loan : families_.loans) {
+      if (loan.type % 8 != 7) {
+        pairs.emplace_back(loan.type, loan.from);
+        continue;
+      }
+      for (std::size_t i = 0, count = families_.crown_models.size(); i < count; ++i) {
+        if (families_.crown_models[i].type != loan.from || families_.crown_models[i].from != loan.from) continue;
+        FamilyCrownModel lent = families_.crown_models[i];
+        lent.type = loan.type;
+        families_.crown_models.push_back(std::move(lent));
+      }
+    }
+    add(pairs);
+  }
+
+ private:
+  void add(const std::vector<std::pair<int, int>>& pairs) {
+    std::vector<FamilyCrownModel> added(2 * pairs.size());
+    tbb::parallel_for(std::size_t{0}, added.size(), [&](std::size_t i) {
+      const auto [type, from] = pairs[i / 2];
+      const int of = type % 8 == 7 ? type - 1 : type;
+      const bool right_side = i % 2 == 1;
+      const int fdi = fdi_of_type(of, right_side);
+      const CrownShapeModel model = load_crown_shape_model(
+          folder_ / ("crown_ssm_" + std::to_string(fdi) + ".safetensors"), mode_count_, right_side);
+      FamilyCrownModel& result = added[i];
+      result.type = type;
+      result.from = from;
+      result.usual_share = type % 8 == 7 ? 0.0 : type == from ? template_share : 0.9;
+      result.modes = carry_crown_model(families_.templates[static_cast<std::size_t>(from)], model,
+                                       buccal_[static_cast<std::size_t>(from)], type < 8);
+    });
+    for (FamilyCrownModel& model : added) families_.crown_models.push_back(std::move(model));
+  }
+
+  ToothFamilies& families_;
+  std::filesystem::path folder_;
+  std::size_t mode_count_;
+  const std::array<Eigen::Vector3d, tooth_type_count>& buccal_;
+};
+
 }  // namespace
 
 ToothFamilies load_tooth_families(const std::filesystem::path& folder, const FamilyLoadOptions& options) {
@@ -148,6 +243,7 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
   }
   for (int type : wanted)
     if (type < 0 || type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
+  std::array<Eigen::Vector3d, tooth_type_count> buccal;
   tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
     const int type = wanted[i];
     const auto t = static_cast<std::size_t>(type);
@@ -155,13 +251,14 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
     std::vector<Eigen::Vector3d> arch(centres.begin() + (type < 8 ? 0 : 8), centres.begin() + (type < 8 ? 8 : 16));
     std::sort(arch.begin(), arch.end(), [](const auto& a, const auto& b) { return a.z() - a.x() > b.z() - b.x(); });
     const auto at = std::find(arch.begin(), arch.end(), centres[t]) - arch.begin();
-    families.templates[t] = analyse_template(files[t].mesh, crowns[t],
-                                             buccal_direction(arch, static_cast<std::size_t>(at)), options.vertices);
+    buccal[t] = buccal_direction(arch, static_cast<std::size_t>(at));
+    families.templates[t] = analyse_template(files[t].mesh, crowns[t], buccal[t], options.vertices);
   });
   for (const TemplateLoan& loan : possible_loans()) {
     const auto loaded = [&wanted](int type) { return std::find(wanted.begin(), wanted.end(), type) != wanted.end(); };
     if (loaded(loan.type) && loaded(loan.from)) families.loans.push_back(loan);
   }
+  CrownModelLoader(families, folder / "crowns" / "ssm", options.crown_modes, buccal).load(wanted);
   measure_turns(families);
   return families;
 }

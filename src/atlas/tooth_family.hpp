@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "atlas/crown_model.hpp"
 #include "completion/frame.hpp"
 #include "rhizodont/mesh.hpp"
 
@@ -59,41 +60,66 @@ struct TemplateLoan {
   double turn = 0;         ///< rotation about z (radians) that the borrowed template has against the type's own
 };
 
+/// A statistical crown model on the template that a type is grown from.
+struct FamilyCrownModel {
+  int type = 0, from = 0;     ///< types 0..15: grown as, template of
+  double usual_share = 1;     ///< part of modes.mean_shift that a tooth of the type has on average
+  double template_share = 0;  ///< part that the template has already
+  CrownModes modes;
+};
+
 /// Everything the generator draws from; immutable after loading, may be shared between threads.
 struct ToothFamilies {
+  /// Brought towards the mean crown of their type's statistical model, where there is one.
   std::array<FamilyTemplate, tooth_type_count> templates;
   std::array<ToothDimensions, tooth_type_count> dimensions;
   /// Now and then a type is grown from a neighbour's template.
   std::vector<TemplateLoan> loans;
+  /// Of left and right crowns; none where the models' folder is missing. Third molars borrow those of second molars.
+  std::vector<FamilyCrownModel> crown_models;
 };
 
 /// Options of load_tooth_families.
 struct FamilyLoadOptions {
-  std::size_t vertices = 5000;  ///< vertices per template after simplification, >= 500
-  std::vector<int> types;       ///< types 0..15 to load; empty: all
+  std::size_t vertices = 5000;   ///< vertices per template after simplification, >= 500
+  std::vector<int> types;        ///< types 0..15 to load; empty: all
+  std::size_t crown_modes = 24;  ///< modes of the statistical crown models, 0..40; 0: do without these models
 };
 
 /// Reads folder/templates/tooth_FDI.ply (21-28, 31-38; per-vertex `crown`: 1 enamel, 0 cementum, 255 unlabelled) and
 /// folder/anatomy.csv, and finds axes, junction, roots, apices and furcations. Takes some seconds.
+/// If there is a folder/crowns/ssm with crown_ssm_FDI.safetensors (x1-x7 of all quadrants; see CrownShapeModel), these
+/// are registered to the templates.
 /// Throws InputError if a file is missing or damaged or a template is not a closed surface of genus 0.
 ToothFamilies load_tooth_families(const std::filesystem::path& folder, const FamilyLoadOptions& options = {});
 
 /// How generated teeth vary; standard deviations unless said otherwise. 0 switches a variation off.
 struct ToothVariation {
+  double crown_modes = 1.1;            ///< factor on the crown models' own deviations
+  double crown_mean = 0.35;            ///< of the way from the template's own crown (-1) to the model's mean (0)
   double size = 0.06;                  ///< common factor of all crown dimensions, relative
-  double proportion = 0.05;            ///< mesiodistal, buccolingual and height each on its own, relative
-  double root_length_mm = 1.45;        ///< root length beside what goes with size, millimetres
+  double proportion = 0.035;           ///< mesiodistal and buccolingual width each on its own, relative
+  double crown_height = 0.07;          ///< height of the crown on its own, relative
+  double root_length_mm = 1.5;         ///< root length beside what goes with size, millimetres
   double root_size_correlation = 0.5;  ///< exponent with which the root's length follows the crown's size, 0..1
-  double trunk = 0.15;                 ///< length of the root trunk, relative
+  double trunk = 0.22;                 ///< length of the root trunk, relative
   double warp_mm = 0.27;               ///< smooth displacement of the surface of a tooth 8 mm wide, waves of 7 to 20 mm
-  double root_thickness = 0.08;        ///< the root's cross-section along x and y each, relative
-  double taper = 0.12;                 ///< change of the cross-section from neck to apex, relative
+  double root_thickness = 0.09;        ///< the root's cross-section along x and y each, relative
+  double taper = 0.15;                 ///< change of the cross-section from neck to apex, relative
+  double lean_degrees = 3;             ///< angle between the root's line and the crown's axis, along x and y each
   double distal_bend_mm = 0.9;         ///< sideways shift of the apex towards distal and buccal, millimetres
-  double divergence_mm = 0.9;          ///< shift of each apex of a multi-rooted tooth away from the others, millimetres
+  double dilaceration_share = 0.05;    ///< share of teeth with a sharp turn near the tip, 0..1
+  double divergence_mm = 1.0;          ///< shift of each apex of a multi-rooted tooth away from the others, millimetres
+  double fusion = 1;                   ///< factor on the share of teeth whose roots part late, 0..2
   double junction_curve = 0.2;         ///< depth of the curves of the cemento-enamel junction, relative
   double blunt_share = 0.4;            ///< share of root tips that are rounded off, by up to 0.7 mm, 0..1
-  double wear_mm = 0.8;                ///< upper end of the uniform loss of cusp height in a worn tooth, millimetres
-  double wear_share = 0.4;             ///< share of worn teeth, 0..1
+  double open_apex_share = 0.03;       ///< share of immature teeth: short and wide open at the tip, 0..1
+  double resorption_share = 0.04;      ///< share of teeth with shortened, blunt roots, 0..1
+  double deciduous_share = 0.02;       ///< share of small squat crowns on slender, flaring roots, 0..1
+  double wear_mm = 3.0;                ///< largest loss of cusp height in a worn tooth; most lose little, millimetres
+  double wear_share = 0.5;             ///< share of worn teeth, 0..1
+  double decay_share = 0.05;           ///< share of crowns with a cavity or chip, 0..1
+  double bracket_share = 0.05;         ///< share of crowns with a bracket or attachment, 0..1
 };
 
 /// A generated whole tooth, millimetres, in the frame of FamilyTemplate, and what is known about it.
@@ -105,14 +131,16 @@ struct SyntheticTooth {
   Eigen::Vector3d growth_axis{0, 0, 1};  ///< root to crown
   JunctionHeight junction;               ///< height of the cemento-enamel junction
   double crown_turn = 0;      ///< rotation about z (radians) that the crown has against the type's mean crown
+  bool own_template = true;   ///< grown from the type's own template: same triangles and places as its others
   std::vector<Point> apices;  ///< tips of the roots
-  double crown_height = 0;    ///< top above the junction's mean height
-  double root_length = 0;     ///< junction's mean height to the deepest apex along z
-  double furcation_z = 0;     ///< highest branching, height; 0 for a single root
+  std::vector<Eigen::Vector3d> root_axes;  ///< unit, from each root's tip to its middle where it branches off
+  double crown_height = 0;                 ///< top above the junction's mean height
+  double root_length = 0;                  ///< junction's mean height to the deepest apex along z
+  double furcation_z = 0;                  ///< highest branching, height; 0 for a single root
 };
 
 /// Draws tooth number `seed` of a type (0..15). Depends on the arguments alone. A draw that folds, turns over or lets
-/// roots run into each other is rejected and drawn again from the same seed's stream.
+/// triangles run into each other is rejected and drawn again from the same seed's stream.
 /// Throws UsageError for a bad type or one that was not loaded, NoResultError after 20 rejected draws.
 SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint64_t seed,
                               const ToothVariation& variation = {});

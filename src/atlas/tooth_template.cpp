@@ -7,6 +7,7 @@
 // furcation. Simplification: P. Lindstrom, G. Turk, "Fast and memory efficient polygonal simplification", 1998 (CGAL).
 #include "atlas/tooth_template.hpp"
 
+#include "atlas/self_crossing.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "rhizodont/error.hpp"
@@ -279,7 +280,10 @@ FamilyTemplate analyse_template(const TriangleMesh& mesh, const std::vector<std:
   Point origin = Point::Zero();
   for (const Point& p : border) origin += p / static_cast<double>(border.size());
 
+  // Simplification may fold a groove; a few vertices more and it goes another way.
   tooth.mesh = simplified(mesh, vertices);
+  for (std::size_t more = 1; more <= 8 && crosses_itself(tooth.mesh); ++more)
+    tooth.mesh = simplified(mesh, vertices + more * vertices / 50);
   const NearestVertexIndex full(mesh.vertices);
   for (Point& p : tooth.mesh.vertices) {
     tooth.crown.push_back(crown[static_cast<std::size_t>(full.nearest(p).index)]);
