@@ -158,6 +158,12 @@ void add_train_command(CLI::App& app) {
   train_app->add_option("--rate", o.learning_rate, "Largest learning rate")->capture_default_str();
   train_app->add_option("--threads", o.threads, "Threads; the batch is a multiple of them")->capture_default_str();
   train_app->add_option("--seed", o.seed, "Seed of weights and noise")->capture_default_str();
+  train_app->add_option("--processes", o.processes.count, "Processes that train together, on one machine or several")
+      ->capture_default_str();
+  train_app->add_option("--rank", o.processes.rank, "Number of this process, from 0; 0 keeps log and checkpoints")
+      ->capture_default_str();
+  train_app->add_option("--first", o.processes.first_address, "HOST:PORT where process 0 listens")
+      ->capture_default_str();
   auto* export_to = train_app->add_option(
       "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");
   train_app->callback([command, data, export_to] {

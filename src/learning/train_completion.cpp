@@ -17,6 +17,7 @@
 #include "learning/adapointr.hpp"
 #include "learning/losses.hpp"
 #include "learning/optimiser.hpp"
+#include "learning/process_group.hpp"
 #include "learning/safetensors.hpp"
 #include "learning/threads.hpp"
 #include "learning/training_batch.hpp"
@@ -77,7 +78,7 @@ void check_options(const TrainingOptions& o) {
 double learning_rate(const TrainingOptions& o, std::uint64_t step) {
   const auto now = static_cast<double>(step), warm_up = static_cast<double>(o.warm_up);
   if (now < warm_up) return o.learning_rate * (now + 1) / warm_up;
-  const double last = static_cast<double>(o.samples) / o.batch;
+  const double last = static_cast<double>(o.samples) / (o.batch * o.processes.count);
   const double progress = std::clamp((now - warm_up) / std::max(last - warm_up, 1.0), 0.0, 1.0);
   return o.learning_rate * (o.lowest_rate + (1 - o.lowest_rate) * 0.5 * (1 + std::cos(std::numbers::pi * progress)));
 }
@@ -96,9 +97,11 @@ class Trainer {
   void save_checkpoint() const;
   bool load_checkpoint();
   void save_best(const std::map<std::string, std::string>& figures) const;
+  void share_state();
 
   const SampleProvider& provider_;
   const TrainingOptions& options_;
+  ProcessGroup processes_;
   layers::Precision precision_;
   mutable AdaPoinTr network_;
   std::vector<torch::Tensor> parameters_;
@@ -110,6 +113,7 @@ class Trainer {
 Trainer::Trainer(const SampleProvider& provider, const TrainingOptions& options)
     : provider_(provider),
       options_(options),
+      processes_(options.processes),
       precision_(options.half_precision && layers::half_is_fast() ? layers::Precision::half
                                                                   : layers::Precision::single),
       network_(nullptr) {
@@ -117,7 +121,11 @@ Trainer::Trainer(const SampleProvider& provider, const TrainingOptions& options)
   network_ = AdaPoinTr(options.shape);
   parameters_ = network_->parameters();
   tensors_ = trained_tensors(*network_);
-  if (options.resume && load_checkpoint()) return;
+  const bool resumed = processes_.share(options.resume && processes_.is_first() && load_checkpoint() ? 1 : 0) == 1;
+  if (resumed) {
+    share_state();
+    return;
+  }
   QueryLayout layout = initial_layout(provider, options.shape);
   for (int type = 0; type <= unknown_type; ++type) {
     const auto& patches = layout.patches[static_cast<std::size_t>(type)];
@@ -125,10 +133,24 @@ Trainer::Trainer(const SampleProvider& provider, const TrainingOptions& options)
   }
   layouts_ = std::move(layout.points);
   for (TrainedTensor& tensor : tensors_) tensor.average.copy_(tensor.value);
+  share_state();
+}
+
+/// All processes go on from where the first one is.
+void Trainer::share_state() {
+  for (TrainedTensor& tensor : tensors_) processes_.share({tensor.value, tensor.mean, tensor.square, tensor.average});
+  result_.samples = static_cast<std::uint64_t>(processes_.share(static_cast<std::int64_t>(result_.samples)));
+  result_.steps = static_cast<std::uint64_t>(processes_.share(static_cast<std::int64_t>(result_.steps)));
+  layouts_.resize(static_cast<std::size_t>(processes_.share(static_cast<std::int64_t>(layouts_.size()))));
+  for (PointLayout& layout : layouts_) {
+    layout.resize(static_cast<std::size_t>(processes_.share(static_cast<std::int64_t>(layout.size()))));
+    if (!layout.empty())
+      processes_.share({torch::from_blob(layout.data(), {static_cast<std::int64_t>(layout.size())}, torch::kInt)});
+  }
 }
 
 void Trainer::log(const std::string& line) const {
-  if (options_.log) options_.log(line);
+  if (options_.log && processes_.is_first()) options_.log(line);
 }
 
 /// Loss and gradients of samples `first` .. `first + batch / threads - 1`.
@@ -148,10 +170,12 @@ Share Trainer::work(std::uint64_t first) const {
 Figures Trainer::step() {
   const auto threads = static_cast<std::uint64_t>(options_.threads);
   const std::uint64_t each = static_cast<std::uint64_t>(options_.batch) / threads;
+  const auto batch = static_cast<std::uint64_t>(options_.batch), count = static_cast<std::uint64_t>(processes_.size());
+  const std::uint64_t first = result_.samples + batch * static_cast<std::uint64_t>(processes_.rank());
   std::vector<std::future<Share>> others;
   for (std::uint64_t t = 1; t < threads; ++t)
-    others.push_back(std::async(std::launch::async, [&, t] { return work(result_.samples + t * each); }));
-  Share sum = work(result_.samples);
+    others.push_back(std::async(std::launch::async, [&, t] { return work(first + t * each); }));
+  Share sum = work(first);
   for (auto& other : others) {
     const Share share = other.get();
     for (std::size_t i = 0; i < sum.gradients.size(); ++i) {
@@ -159,9 +183,14 @@ Figures Trainer::step() {
     }
     sum.figures += share.figures;
   }
-  const double scale = 1 / static_cast<double>(threads);
+  std::vector<torch::Tensor> own;
+  for (const torch::Tensor& gradient : sum.gradients)
+    if (gradient.defined()) own.push_back(gradient);
+  processes_.sum(own);
+  // Figures are of this process's samples alone.
+  const double scale = 1 / static_cast<double>(threads), gradient_scale = scale / static_cast<double>(count);
   for (torch::Tensor& gradient : sum.gradients) {
-    if (gradient.defined() && threads > 1) gradient.mul_(scale);
+    if (gradient.defined() && gradient_scale != 1) gradient.mul_(gradient_scale);
   }
   StepOptions step;
   step.learning_rate = learning_rate(options_, result_.steps);
@@ -177,7 +206,7 @@ Figures Trainer::step() {
     *value *= scale;
   figures.gradient = adamw_step(tensors_, sum.gradients, step);
   ++result_.steps;
-  result_.samples += static_cast<std::uint64_t>(options_.batch);
+  result_.samples += batch * count;
   result_.last_loss = figures.total;
   return figures;
 }
@@ -192,7 +221,7 @@ void Trainer::log_progress(const Figures& sum, std::uint64_t steps, double minut
                 static_cast<unsigned long long>(result_.steps), static_cast<unsigned long long>(result_.samples),
                 sum.total / n, sum.coarse / n * unit_mm, sum.match / n * unit_mm, sum.chamfer / n * unit_mm,
                 sum.denoise / n * unit_mm, sum.normal / n, sum.spread / n, sum.gradient / n,
-                learning_rate(options_, result_.steps - 1), n * options_.batch / (minutes * 60));
+                learning_rate(options_, result_.steps - 1), n * options_.batch * processes_.size() / (minutes * 60));
   log(line);
 }
 
@@ -323,7 +352,12 @@ TrainingResult Trainer::run() {
   Figures sum;
   std::uint64_t steps = 0;
   double outside = 0;  // minutes since the last line that were not training
-  while (result_.samples < options_.samples && (options_.hours <= 0 || minutes_since(start) < options_.hours * 60)) {
+  const auto goes_on = [&] {
+    const bool wanted =
+        result_.samples < options_.samples && (options_.hours <= 0 || minutes_since(start) < options_.hours * 60);
+    return processes_.share(wanted ? 1 : 0) == 1;  // clocks differ, and nobody must wait for one who has stopped
+  };
+  while (goes_on()) {
     sum += step();
     if (++steps == static_cast<std::uint64_t>(options_.log_steps)) {
       log_progress(sum, steps, minutes_since(logged) - outside);
@@ -332,6 +366,7 @@ TrainingResult Trainer::run() {
       outside = 0;
       logged = Clock::now();
     }
+    if (!processes_.is_first()) continue;
     const Clock::time_point pause = Clock::now();
     if (options_.validation_samples > 0 && minutes_since(validated) >= options_.validation_minutes) {
       validate();
@@ -343,6 +378,7 @@ TrainingResult Trainer::run() {
     }
     outside += minutes_since(pause);
   }
+  if (!processes_.is_first()) return result_;
   if (options_.validation_samples > 0) validate();
   save_checkpoint();
   return result_;

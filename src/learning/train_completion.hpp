@@ -26,6 +26,13 @@ struct CompletionShape {
   int patch_points = 12;    ///< points per patch, >= 1
 };
 
+/// Which of several processes this one is.
+struct ProcessOptions {
+  int count = 1;  ///< >= 1: processes that train one network together; a step takes `batch` samples of each
+  int rank = 0;   ///< 0 <= rank < count; the first one, 0, keeps the log, validates and writes the checkpoints
+  std::string first_address = "127.0.0.1:29500";  ///< HOST:PORT where the first one listens; all must reach each other
+};
+
 /// Settings of `train_completion`.
 struct TrainingOptions {
   CompletionShape shape;
@@ -48,14 +55,15 @@ struct TrainingOptions {
   int denoise_queries = 32;         ///< extra queries in training, >= 0
   double denoise_jitter = 0.05;     ///< standard deviation of their displacement, units of 12 mm
   bool half_precision = true;       ///< bfloat16 for matrix products where the processor has them
-  int threads = 2;                  ///< each works on its share of a batch, >= 1, divides `batch`
-  std::uint64_t seed = 1;           ///< of weights, noise and sample numbers
-  int validation_samples = 64;      ///< held-out samples, numbers that training never reaches; 0: none
-  double validation_minutes = 10;   ///< time between validations
-  double checkpoint_minutes = 3;    ///< time between checkpoints; a stopped run loses at most this
-  int log_steps = 50;               ///< steps between log lines, >= 1
-  std::filesystem::path folder;     ///< where checkpoints go; empty: none are written
-  bool resume = false;              ///< go on from the folder's checkpoint, if there is one
+  ProcessOptions processes;
+  int threads = 2;                              ///< each works on its share of a batch, >= 1, divides `batch`
+  std::uint64_t seed = 1;                       ///< of weights, noise and sample numbers
+  int validation_samples = 64;                  ///< held-out samples, numbers that training never reaches; 0: none
+  double validation_minutes = 10;               ///< time between validations
+  double checkpoint_minutes = 3;                ///< time between checkpoints; a stopped run loses at most this
+  int log_steps = 50;                           ///< steps between log lines, >= 1
+  std::filesystem::path folder;                 ///< where checkpoints go; empty: none are written
+  bool resume = false;                          ///< go on from the folder's checkpoint, if there is one
   std::function<void(const std::string&)> log;  ///< gets each line; may be empty
 };
 
@@ -73,7 +81,10 @@ struct TrainingResult {
 /// `options.folder`.
 /// The sample provider is called from `threads` threads at once, with numbers below `first_validation_sample` for
 /// training and from there on for validation.
-/// Throws UsageError for options out of range, InputError for a sample or checkpoint that does not fit.
+/// Several processes (`options.processes`) start from the first one's checkpoint or weights, take different samples and
+/// sum their gradients, so that their weights stay the same.
+/// Throws UsageError for options out of range, InputError for a sample or checkpoint that does not fit and for
+/// processes that lose each other.
 TrainingResult train_completion(const SampleProvider& provider, const TrainingOptions& options);
 
 /// Writes the weights of a training folder (`best.safetensors`, or the checkpoint's running mean if it was never

@@ -1,9 +1,11 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
+#include <future>
 #include <random>
 #include <thread>
 
@@ -64,6 +66,48 @@ TEST_F(Training, ResumedRunEqualsOneThatNeverStopped) {
   const TrainingResult parts = train_completion(testing::tiny_sample, options);
   EXPECT_EQ(parts.steps, 6U);
   EXPECT_EQ(checkpoint("parts"), checkpoint("whole"));
+}
+
+TEST_F(Training, TwoProcessesEqualOneWithTwiceTheBatch) {
+  TrainingOptions options = testing::tiny_options();
+  options.samples = 24;
+  options.batch = 4;
+  options.threads = 2;
+  options.hours = 1e-12;  // stops before the first step: all go on from the same weights
+  options.folder = folder_ / "alone";
+  train_completion(testing::tiny_sample, options);
+  std::filesystem::create_directories(folder_ / "together");
+  std::filesystem::copy_file(folder_ / "alone" / "checkpoint.safetensors",
+                             folder_ / "together" / "checkpoint.safetensors");
+  options.hours = 0;
+  options.resume = true;
+  EXPECT_EQ(train_completion(testing::tiny_sample, options).samples, 24U);
+
+  options.batch = 2;
+  options.threads = 1;
+  options.processes.count = 2;
+  options.processes.first_address = "127.0.0.1:" + std::to_string(20000 + getpid() % 20000);
+  const auto run = [&](int rank, const char* folder) {
+    TrainingOptions own = options;
+    own.processes.rank = rank;
+    own.folder = folder_ / folder;
+    return train_completion(testing::tiny_sample, own);
+  };
+  auto other = std::async(std::launch::async, [&] { return run(1, "other"); });
+  EXPECT_EQ(run(0, "together").samples, 24U);
+  EXPECT_EQ(other.get().steps, 6U);
+  EXPECT_EQ(checkpoint("together"), checkpoint("alone"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "other" / "checkpoint.safetensors"));
+}
+
+TEST_F(Training, ProcessesThatCannotBeAreRefused) {
+  TrainingOptions options = testing::tiny_options();
+  options.processes = {2, 2, "127.0.0.1:29500"};
+  EXPECT_THROW(train_completion(testing::tiny_sample, options), UsageError);
+  for (const char* address : {"127.0.0.1", "127.0.0.1:port", ":29500", "host:0", "host:70000"}) {
+    options.processes = {2, 0, address};
+    EXPECT_THROW(train_completion(testing::tiny_sample, options), UsageError) << address;
+  }
 }
 
 TEST_F(Training, SameSeedSameWeights) {
