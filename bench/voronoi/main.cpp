@@ -18,6 +18,7 @@ int run(const char* data_folder) {
   const auto teeth = rhizodont::load_validation_teeth(data_folder);
   const auto found = std::find_if(teeth.begin(), teeth.end(), [](const auto& tooth) { return tooth.fdi == molar; });
   rhizodont::print_diagram_times(found == teeth.end() ? teeth.front() : *found);
+  rhizodont::print_crown_shares(data_folder);
   return 0;
 }
 

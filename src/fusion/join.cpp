@@ -24,12 +24,7 @@ Joining join_crown_and_root(const TriangleMesh& crown, const std::vector<Point>&
   joining.sites_without_cell =
       static_cast<int>(std::count(voronoi.site_has_cell.begin(), voronoi.site_has_cell.end(), false));
 
-  joining.crown_in_dual.assign(crown.triangles.size(), true);
-  for (std::size_t t = 0; t < delaunay.mesh.triangles.size(); ++t) {
-    if (!std::binary_search(joining.triangles.begin(), joining.triangles.end(),
-                            lowest_first(delaunay.mesh.triangles[t])))
-      joining.crown_in_dual[static_cast<std::size_t>(delaunay.parent_triangle[t])] = false;
-  }
+  joining.crown_in_dual = triangles_given_by_dual(crown, delaunay, joining.triangles);
   joining.crown_triangles_direct =
       static_cast<int>(std::count(joining.crown_in_dual.begin(), joining.crown_in_dual.end(), true));
   return joining;

@@ -126,6 +126,26 @@ int perturbed_sign(const Evaluation<Exact, N>& exact, const std::array<std::int3
 /// two.
 int filtered_sign(double x, double bound) { return x > bound ? 1 : (x < -bound ? -1 : 0); }
 
+/// An angle by what its cotangent is made of: the dot product of its arms, and the square of the norm of their cross
+/// product.
+struct Cotangent {
+  Exact dot;
+  Exact squared_cross;
+
+  Cotangent(const Point& a, const Point& b, const Point& apex) {
+    std::array<Exact, 3> u, v;
+    for (int i = 0; i < 3; ++i) {
+      u[i] = Exact(a[i]) - Exact(apex[i]);
+      v[i] = Exact(b[i]) - Exact(apex[i]);
+    }
+    dot = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    for (int i = 0; i < 3; ++i) {
+      const Exact cross = u[(i + 1) % 3] * v[(i + 2) % 3] - u[(i + 2) % 3] * v[(i + 1) % 3];
+      squared_cross += cross * cross;
+    }
+  }
+};
+
 }  // namespace
 
 int side1(Site p0, Site p1, const Point& q0) {
@@ -156,6 +176,30 @@ int side3(Site p0, Site p1, Site p2, Site p3, const Point& q0, const Point& q1, 
   const int sign_r = filtered_sign(e.r, 262144 * unit_roundoff * m2 * m2 * m2);
   if (sign_delta != 0 && sign_r != 0) return sign_delta * sign_r;
   return perturbed_sign<4>(evaluate3(Forms<Exact, 3, 3>(*p0.position, p, q)), {p0.index, p1.index, p2.index, p3.index});
+}
+
+int delaunay_sign(const Point& a, const Point& b, const Point& c, const Point& d) {
+  const auto certainly_acute = [&](const Point& apex) {
+    const Eigen::Vector3d u = a - apex;
+    const Eigen::Vector3d v = b - apex;
+    return u.dot(v) > 8 * unit_roundoff * u.norm() * v.norm();
+  };
+  if (certainly_acute(c) && certainly_acute(d)) return 1;
+  const Cotangent at_c(a, b, c);
+  const Cotangent at_d(a, b, d);
+  const int sign_c = sign_of(at_c.dot);
+  const int sign_d = sign_of(at_d.dot);
+  const bool flat_c = sign_of(at_c.squared_cross) == 0;
+  const bool flat_d = sign_of(at_d.squared_cross) == 0;
+  // An angle of 0 leaves the other to be less than pi, or equal to it.
+  if (flat_c && sign_c >= 0) return flat_d && sign_d < 0 ? 0 : 1;
+  if (flat_d && sign_d >= 0) return flat_c ? 0 : 1;
+  if (flat_c || flat_d) return -1;
+  if (sign_c >= 0 && sign_d >= 0) return sign_c + sign_d > 0 ? 1 : 0;
+  if (sign_c <= 0 && sign_d <= 0) return -1;
+  const Exact square_c = at_c.dot * at_c.dot * at_d.squared_cross;
+  const Exact square_d = at_d.dot * at_d.dot * at_c.squared_cross;
+  return sign_c > 0 ? sign_of(Exact(square_c - square_d)) : sign_of(Exact(square_d - square_c));
 }
 
 }  // namespace rhizodont

@@ -31,4 +31,9 @@ int side2(Site p0, Site p1, Site p2, const Point& q0, const Point& q1);
 /// q = the bisectors of (p0, p1) and (p0, p2) met with the triangle (q0, q1, q2). Precondition: that point exists.
 int side3(Site p0, Site p1, Site p2, Site p3, const Point& q0, const Point& q1, const Point& q2);
 
+/// Whether the edge from a to b is Delaunay between the triangles (a, b, c) and (b, a, d): +1 if the angles at c and d
+/// sum to less than pi, -1 if to more, 0 if to pi. Exact: the sign of cot(c) + cot(d), by comparing squares. Angles of
+/// triangles without area are 0 or pi, or 0 where c or d is an end of the edge.
+int delaunay_sign(const Point& a, const Point& b, const Point& c, const Point& d);
+
 }  // namespace rhizodont
