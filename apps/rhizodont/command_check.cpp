@@ -64,7 +64,10 @@ void print_table(const CheckReport& report) {
       fmt::format("{}, {}", solid.euler_number, solid.genus ? std::to_string(*solid.genus) : "-"));
   row("volume", fmt::format("{:.3f} mm3", solid.volume));
   row("self-intersecting pairs", solid.self_intersections.size());
-  print_quality("New triangles", report.new_triangles);
+  fmt::print("Promise 3, new triangles are good: {}\n", report.new_triangles.holds() ? "kept" : "not kept");
+  print_quality("New triangles", report.new_triangles.all);
+  print_quality("New triangles that touch no crown vertex", report.new_triangles.inner);
+  print_quality("New triangles along the crown's border", report.new_triangles.at_border);
   print_quality("All triangles", report.all_triangles);
   for (const std::string& failure : report.failures) fmt::print("- {}\n", failure);
 }

@@ -75,7 +75,7 @@ void print_summary(const CompletedTooth& tooth, const std::string& output) {
   fmt::print(
       "{}: tooth {}{}, {} of {} crown triangles kept bit for bit, root {:.1f} mm, new triangles Q {:.3f}, {:.2f} s\n",
       output, r.fdi, r.fdi_guessed ? " (guessed)" : "", r.kept_triangles, r.crown_triangles, r.root_length_mm,
-      r.new_triangles.q_avg, seconds);
+      r.promises.new_triangles.all.value_or(QualityFigures{}).q_avg, seconds);
   if (const auto& interval = r.root_interval)
     fmt::print("  root length with 80 % probability {:.1f} to {:.1f} mm, apex within {:.1f} mm\n",
                interval->length_low_mm, interval->length_high_mm, interval->apex_radius_mm);
@@ -134,8 +134,8 @@ void add_complete_command(CLI::App& app) {
   complete->add_option("--unit", command->options.millimetres_per_unit, "Unit of the crown's file: mm, cm, in, m")
       ->transform(CLI::CheckedTransformer(unit_names))
       ->default_str("mm");
-  complete->add_option("--transition", command->options.transition, "Width in mm of the smoothed band beside the crown")
-      ->capture_default_str();
+  complete->add_option("--transition", command->options.transition,
+                       "Width in mm of the smoothed band beside the crown, 0 to 5; chosen if not given");
   RootSteering& steering = command->options.steering;
   complete->add_option("--root-length", steering.length_mm,
                        "Length of the root in mm, such as measured on an X-ray: lowest point of the crown to the apex");

@@ -70,7 +70,7 @@ struct SolidCheck {
 struct CheckReport {
   CrownCheck crown;
   SolidCheck solid;
-  std::optional<QualityFigures> new_triangles;  ///< over the tooth's triangles that are not the crown's
+  NewTriangleFigures new_triangles;             ///< promise 3, as figures: a tooth that misses it is still a tooth
   std::optional<QualityFigures> all_triangles;  ///< over all of the tooth's
   std::vector<std::string> failures;            ///< one sentence per thing that is not as promised; empty if both hold
 

@@ -28,9 +28,11 @@ struct CompleteOptions {
   double e = 0.5;          ///< mm, [0.2, 2]: side of the lattice under the guiding surface; new edges are about e / 2
   CapHandling cap = CapHandling::drop;
   double millimetres_per_unit = 1;  ///< > 0: of the input's coordinates; the output has the input's unit
-  double transition = 1.5;          ///< mm, [0, 5]: width of the smoothed band beside the crown
-  RootSteering steering;            ///< what the user knows or wants of the root
-  int threads = 0;                  ///< >= 0: at most so many threads; 0: all
+  /// mm, [0, 5]: width of the smoothed band beside the crown; unset: from the border's edges and from how far the root
+  /// misses the border.
+  std::optional<double> transition;
+  RootSteering steering;  ///< what the user knows or wants of the root
+  int threads = 0;        ///< >= 0: at most so many threads; 0: all
 };
 
 /// A vertex of the input that the tooth does not have, and why.
@@ -73,12 +75,20 @@ struct CompletionRecord {
   double guiding_distance_mean = 0;      ///< mm, from the kept crown's vertices to the guiding surface
   double guiding_distance_max = 0;
   int guiding_vertices = 0;
+  int root_sites = 0;                ///< root vertices that the dual was taken of
+  int sites_without_cell = 0;        ///< sites (crown or root) that the guiding surface does not come near
   int steiner_points = 0;            ///< added to make the crown a Delaunay mesh, none left in the tooth
   int crown_triangles_direct = 0;    ///< given by the dual of the restricted Voronoi diagram
   int crown_triangles_restored = 0;  ///< brought back by the restore step
+  int non_delaunay_edges_left = 0;   ///< of the crown in spite of the Steiner points
+  int triangles_filled = 0;          ///< new triangles that closed gaps which the dual left
+  int holes_filled = 0;              ///< such gaps, and holes of the crown itself
+  int remeshing_operations = 0;      ///< edges split, collapsed or turned and vertices moved to mend small angles
+  double sharpest_notch = 180;       ///< degrees, at the crown's border, open to the root: no new angle there is larger
   int transition_vertices = 0;
-  QualityFigures new_triangles;              ///< over the triangles that are not the crown's (paper, 4.3)
-  CheckReport promises;                      ///< evidence for promises 1 and 2
+  double transition_width_mm = 0;            ///< of the smoothed band
+  double transition_largest_move_mm = 0;     ///< how far smoothing moved a vertex
+  CheckReport promises;                      ///< evidence for promises 1 and 2, figures for promise 3
   std::map<std::string, std::string> model;  ///< what the network's weights say of themselves: date, samples, seed
   std::vector<StageRecord> stages;
   std::vector<std::string> warnings;

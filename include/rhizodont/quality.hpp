@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 namespace rhizodont {
 
@@ -15,6 +16,25 @@ struct QualityFigures {
   double theta_min = 0;         ///< smallest angle, degrees
   double theta_max = 0;         ///< largest angle, degrees
   double percent_below_30 = 0;  ///< of all angles, those under 30 degrees, percent
+};
+
+/// Figures over the triangles that are not the crown's, and over two parts of them.
+struct NewTriangleFigures {
+  std::optional<QualityFigures> all;
+  std::optional<QualityFigures> inner;      ///< those that touch no crown vertex
+  std::optional<QualityFigures> at_border;  ///< those that touch one: the crown's border sets them a limit
+
+  static constexpr double least_q_avg = 0.93;           ///< of all
+  static constexpr double most_percent_below_30 = 0.5;  ///< of all
+  static constexpr double least_inner_angle = 20;       ///< degrees
+  static constexpr double least_border_angle = 5;       ///< degrees
+
+  /// Promise 3: all of these bounds are kept.
+  bool holds() const {
+    return all && all->q_avg >= least_q_avg && all->percent_below_30 <= most_percent_below_30 &&
+           (!inner || inner->theta_min >= least_inner_angle) &&
+           (!at_border || at_border->theta_min >= least_border_angle);
+  }
 };
 
 }  // namespace rhizodont

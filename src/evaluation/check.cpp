@@ -140,6 +140,7 @@ bool has_surface(const TriangleMesh& mesh) {
 struct Comparison {
   CrownCheck crown;
   std::vector<bool> new_triangles;  // of the tooth
+  std::vector<bool> touches_crown;  // per triangle of the tooth: one of its vertices is the crown's
 };
 
 Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as_float) {
@@ -177,9 +178,26 @@ Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as
       report.triangles > 0 ? static_cast<double>(report.kept_triangles) / static_cast<double>(report.triangles) : 0;
 
   const std::vector<Triangle> in_crown = sorted_triangles(crown, of_crown);
-  for (const Triangle& triangle : tooth.triangles)
+  std::vector<bool> is_crown_place(places.size(), false);
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v]) is_crown_place[static_cast<std::size_t>(of_crown[v])] = true;
+  for (const Triangle& triangle : tooth.triangles) {
     found.new_triangles.push_back(!std::binary_search(in_crown.begin(), in_crown.end(), canonical(triangle, of_tooth)));
+    found.touches_crown.push_back(std::any_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
+      return is_crown_place[static_cast<std::size_t>(of_tooth[static_cast<std::size_t>(v)])];
+    }));
+  }
   return found;
+}
+
+NewTriangleFigures new_triangle_figures(const TriangleMesh& tooth, const Comparison& found) {
+  std::vector<bool> inner = found.new_triangles;
+  std::vector<bool> at_border = found.new_triangles;
+  for (std::size_t t = 0; t < inner.size(); ++t) {
+    inner[t] = inner[t] && !found.touches_crown[t];
+    at_border[t] = at_border[t] && found.touches_crown[t];
+  }
+  return {quality(tooth, found.new_triangles), quality(tooth, inner), quality(tooth, at_border)};
 }
 
 SolidCheck check_solid(const TriangleMesh& tooth, const TriangleMesh& usable, const Diagnosis& found) {
@@ -252,7 +270,7 @@ CheckReport check(const TriangleMesh& crown, const TriangleMesh& tooth, const Ch
   report.crown.holds = report.crown.kept_triangles > 0 && report.crown.kept_share >= options.least_kept_share &&
                        report.crown.broken_triangles.empty();
   report.solid = check_solid(tooth, usable, found);
-  report.new_triangles = quality(usable, comparison.new_triangles);
+  report.new_triangles = new_triangle_figures(usable, comparison);
   report.all_triangles = quality(usable);
   tell_crown_failures(report.crown, options.least_kept_share, report.failures);
   tell_solid_failures(report.solid, found, report.failures);

@@ -65,7 +65,10 @@ void to_json(Json& json, const CheckReport& report) {
               {"failures", report.failures},
               {"crown", crown_json(report.crown)},
               {"solid", solid_json(report.solid)},
-              {"quality_new_triangles", value_or_null(report.new_triangles)},
+              {"quality_new_triangles", value_or_null(report.new_triangles.all)},
+              {"quality_new_triangles_inner", value_or_null(report.new_triangles.inner)},
+              {"quality_new_triangles_at_border", value_or_null(report.new_triangles.at_border)},
+              {"promise_3_holds", report.new_triangles.holds()},
               {"quality_all_triangles", value_or_null(report.all_triangles)}};
 }
 

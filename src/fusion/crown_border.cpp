@@ -4,10 +4,15 @@
 #include "fusion/crown_border.hpp"
 
 #include "mesh/adjacency.hpp"
+#include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
 #include <tbb/parallel_for.h>
+
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace rhizodont {
 bool lies_on_border(const TriangleMesh& crown, const CrownBorder& border, const ClosestPoint& closest) {
@@ -23,6 +28,33 @@ bool lies_on_border(const TriangleMesh& crown, const CrownBorder& border, const 
   }
   return false;
 }
+
+namespace {
+
+/// Smallest angle in degrees between consecutive border edges where the crown takes up more than half a turn.
+double sharpest_notch(const TriangleMesh& crown, const CrownBorder& border) {
+  constexpr double degrees = 180 / std::numbers::pi;
+  std::vector<double> turn(crown.vertices.size(), 0);
+  for (std::size_t t = 0; t < crown.triangles.size(); ++t) {
+    const auto angles = triangle_angles(crown, t);
+    for (std::size_t i = 0; i < 3; ++i) turn[static_cast<std::size_t>(crown.triangles[t][i])] += angles[i] * degrees;
+  }
+  std::vector<int> before(crown.vertices.size(), -1);
+  for (const auto& [from, to] : border.half_edges) before[static_cast<std::size_t>(to)] = from;
+  double sharpest = 180;
+  for (const auto& [v, next] : border.half_edges) {
+    const int previous = before[static_cast<std::size_t>(v)];
+    if (turn[static_cast<std::size_t>(v)] <= 180 || previous < 0) continue;
+    const Eigen::Vector3d a =
+        crown.vertices[static_cast<std::size_t>(previous)] - crown.vertices[static_cast<std::size_t>(v)];
+    const Eigen::Vector3d b =
+        crown.vertices[static_cast<std::size_t>(next)] - crown.vertices[static_cast<std::size_t>(v)];
+    sharpest = std::min(sharpest, std::atan2(a.cross(b).norm(), a.dot(b)) * degrees);
+  }
+  return sharpest;
+}
+
+}  // namespace
 
 CrownBorder find_crown_border(const TriangleMesh& crown) {
   CrownBorder border;
@@ -42,6 +74,7 @@ CrownBorder find_crown_border(const TriangleMesh& crown) {
   if (border.half_edges.empty())
     throw InputError("The crown is closed: without an open base there is no place for a root.");
   border.mean_edge /= static_cast<double>(border.half_edges.size());
+  border.sharpest_notch = sharpest_notch(crown, border);
   return border;
 }
 

@@ -8,15 +8,30 @@
 #include "fusion/crown_border.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/nearest_vertex.hpp"
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <chrono>
 #include <utility>
 
 namespace rhizodont {
 namespace {
+
+double border_gap(const TriangleMesh& crown, const CrownBorder& border, const SurfaceWalk& walk) {
+  const NearestVertexIndex index(walk.surface().vertices);
+  std::vector<double> distances;
+  for (const auto& [v, next] : border.half_edges) {
+    const Point& p = crown.vertices[static_cast<std::size_t>(v)];
+    distances.push_back((walk.closest(p, walk.triangle_at(index.nearest(p).index)).point - p).norm());
+  }
+  const auto rank = distances.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size()));
+  std::nth_element(distances.begin(), rank, distances.end());
+  return *rank;
+}
 
 /// What all attempts share.
 struct Ground {
@@ -27,6 +42,7 @@ struct Ground {
   CrownDistances distances;
   SurfaceWalk walk;
   EdgeLengths lengths;
+  double gap;  // mm, how far the guiding surface misses the border: exceeded by a twentieth of its vertices
 
   Ground(const TriangleMesh& the_crown, const TriangleMesh& guiding_surface, const Eigen::Vector3d& axis,
          const FuseOptions& options)
@@ -36,7 +52,8 @@ struct Ground {
         border(find_crown_border(crown)),
         distances(crown_distances(surface, crown, border)),
         walk(surface),
-        lengths(edge_lengths(crown, border, mean_edge_length(surface))) {
+        lengths(edge_lengths(crown, border, mean_edge_length(surface))),
+        gap(border_gap(crown, border, walk)) {
     lengths.growth = options.edge_growth;
     lengths.shrinkage = options.edge_shrinkage;
   }
@@ -53,6 +70,19 @@ std::vector<Point> cutting_points(const RestoredTooth& tooth, const std::vector<
     }
   return points;
 }
+
+class Stopwatch {
+ public:
+  /// Adds the seconds since the last call, or since the start, to `sum`.
+  void add_to(double& sum) {
+    const auto now = std::chrono::steady_clock::now();
+    sum += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
 
 /// Remeshes the root; where that makes the tooth cut itself, the triangles around are left as they were.
 void improve_triangles(const Ground& ground, const FuseOptions& options, FusedTooth& fused) {
@@ -73,38 +103,81 @@ void improve_triangles(const Ground& ground, const FuseOptions& options, FusedTo
   fused.warnings.push_back("The root's triangles could not be improved.");
 }
 
-FusedTooth attempt(const Ground& ground, const FuseOptions& options, const SeparationOptions& separation) {
-  FusedTooth fused;
+Joining join(const Ground& ground, const FuseOptions& options, const SeparationOptions& separation, FusedTooth& fused) {
+  Stopwatch watch;
   const auto is_root = separate_crown_and_root(ground.surface, ground.distances, ground.growth_axis, separation);
+  watch.add_to(fused.seconds.separation);
   const std::vector<Point> root =
       root_sites(ground.walk, is_root, ground.crown, ground.border, ground.lengths, options.sites);
+  watch.add_to(fused.seconds.sites);
+  Joining joining = join_crown_and_root(ground.crown, root, ground.surface, options.join);
+  watch.add_to(fused.seconds.joining);
   fused.root_sites = static_cast<int>(root.size());
-  const Joining joining = join_crown_and_root(ground.crown, root, ground.surface, options.join);
   fused.crown_triangles_direct = joining.crown_triangles_direct;
   fused.steiner_points = joining.steiner_points;
   fused.non_delaunay_edges_left = joining.non_delaunay_edges_left;
   fused.sites_without_cell = joining.sites_without_cell;
+  return joining;
+}
+
+/// Restores, remeshes and smooths with one test for self-intersection at the end; false if the tooth does not pass.
+bool finish_at_once(const Ground& ground, const Joining& joining, const FuseOptions& options,
+                    const TransitionOptions& transition, FusedTooth& fused) {
+  Stopwatch watch;
+  RestoreOptions restore = options.restore;
+  restore.test_cuts = false;
+  fused.tooth = restore_crown(ground.crown, joining, restore);
+  watch.add_to(fused.seconds.restoring);
+  if (!diagnose(fused.tooth.mesh).is_closed_solid()) return false;
+  fused.remeshing = remesh_root(fused.tooth, ground.walk, ground.lengths, {}, 0, options.remesh);
+  watch.add_to(fused.seconds.remeshing);
+  TransitionOptions quick = transition;
+  quick.cut_rounds = 1;
+  fused.transition = smooth_transition(fused.tooth, quick);
+  watch.add_to(fused.seconds.transition);
+  return !fused.transition.cuts_itself;
+}
+
+/// The same with a test after each step, so that the step that would break the tooth can be mended or left out.
+void finish_step_by_step(const Ground& ground, const Joining& joining, const FuseOptions& options,
+                         const TransitionOptions& transition, FusedTooth& fused) {
+  Stopwatch watch;
   fused.tooth = restore_crown(ground.crown, joining, options.restore);
+  watch.add_to(fused.seconds.restoring);
   if (!diagnose(fused.tooth.mesh).is_closed_solid())
     throw NoResultError("Crown and root together do not form a solid of one piece.");
   improve_triangles(ground, options, fused);
-  fused.transition = smooth_transition(fused.tooth, options.transition);
-  if (fused.transition.applied < 1)
+  watch.add_to(fused.seconds.remeshing);
+  fused.transition = smooth_transition(fused.tooth, transition);
+  watch.add_to(fused.seconds.transition);
+  if (fused.transition.cuts_itself) throw NoResultError("The tooth cuts itself at the seam.");
+}
+
+void attempt(const Ground& ground, const FuseOptions& options, const SeparationOptions& separation, FusedTooth& fused) {
+  const Joining joining = join(ground, options, separation, fused);
+  TransitionOptions transition = options.transition;
+  transition.gap = ground.gap;
+  if (!finish_at_once(ground, joining, options, transition, fused))
+    finish_step_by_step(ground, joining, options, transition, fused);
+  if (fused.transition.applied < 0.9)
     fused.warnings.push_back(
         fmt::format("The seam between crown and root was smoothed to {:.0f} % only.", 100 * fused.transition.applied));
-  return fused;
 }
 
 }  // namespace
 
 FusedTooth fuse_crown_and_root(const TriangleMesh& crown, const TriangleMesh& guiding_surface,
                                const Eigen::Vector3d& growth_axis, const FuseOptions& options) {
+  FusedTooth fused;
+  Stopwatch watch;
   const Ground ground(crown, guiding_surface, growth_axis, options);
+  watch.add_to(fused.seconds.separation);
+  fused.sharpest_notch = ground.border.sharpest_notch;
   SeparationOptions separation = options.separation;
   std::vector<std::string> failures;
   for (int i = 1;; ++i) {
     try {
-      FusedTooth fused = attempt(ground, options, separation);
+      attempt(ground, options, separation, fused);
       for (const std::string& sentence : failures)
         fused.warnings.push_back("The root was started farther from the crown's border: " + sentence);
       return fused;

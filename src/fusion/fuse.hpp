@@ -28,6 +28,16 @@ struct FuseOptions {
                             ///< itself
 };
 
+/// Wall-clock seconds that the steps took, all attempts together.
+struct FuseSeconds {
+  double separation = 0;  ///< with border, distances from the crown and what all attempts share
+  double sites = 0;
+  double joining = 0;
+  double restoring = 0;
+  double remeshing = 0;
+  double transition = 0;
+};
+
 /// A closed tooth made of the crown and the guiding surface's root, with what the steps on the way did.
 struct FusedTooth {
   RestoredTooth tooth;
@@ -37,7 +47,9 @@ struct FusedTooth {
   int crown_triangles_direct = 0;   ///< crown triangles that the dual of the restricted Voronoi diagram gave directly
   int steiner_points = 0;           ///< that made the crown a Delaunay mesh; none is left in the tooth
   int non_delaunay_edges_left = 0;  ///< of the crown in spite of them
-  int sites_without_cell = 0;       ///< sites that the guiding surface does not come near
+  double sharpest_notch = 180;      ///< see CrownBorder::sharpest_notch
+  FuseSeconds seconds;
+  int sites_without_cell = 0;  ///< sites that the guiding surface does not come near
   std::vector<std::string> warnings;
 };
 

@@ -14,6 +14,7 @@
 #include "rhizodont/error.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <set>
@@ -31,8 +32,12 @@ std::array<HalfEdge, 3> half_edges(const Triangle& t) {
 class RootPatch {
  public:
   RootPatch(const TriangleMesh& crown, const Joining& joining) : crown_(crown), sites_(joining.sites) {
+    crown_half_edges_.reserve(3 * crown.triangles.size());
     for (const Triangle& t : crown.triangles)
-      for (const HalfEdge& h : half_edges(t)) crown_half_edges_.insert(h);
+      for (const HalfEdge& h : half_edges(t)) crown_half_edges_.push_back(h);
+    std::sort(crown_half_edges_.begin(), crown_half_edges_.end());
+    for (const HalfEdge& h : crown_half_edges_)
+      if (!is_of_crown({h.second, h.first})) border_half_edges_.push_back(h);
     const auto loops = border_loops(crown);
     outer_ = *std::max_element(loops.begin(), loops.end(),
                                [&](const auto& x, const auto& y) { return loop_length(x) < loop_length(y); });
@@ -67,7 +72,7 @@ class RootPatch {
     }
     for (const Triangle& t : triangles_)
       for (const auto& [a, b] : half_edges(t))
-        if (crown_half_edges_.contains({b, a})) return;
+        if (is_of_crown({b, a})) return;
     double best = std::numeric_limits<double>::max();
     HalfEdge ours, crowns;
     for (std::size_t i = 0; i < outer_.size(); ++i) {
@@ -116,6 +121,10 @@ class RootPatch {
  private:
   int crown_vertices() const { return static_cast<int>(crown_.vertices.size()); }
 
+  bool is_of_crown(const HalfEdge& h) const {
+    return std::binary_search(crown_half_edges_.begin(), crown_half_edges_.end(), h);
+  }
+
   double distance(int a, int b) const {
     return (sites_[static_cast<std::size_t>(a)] - sites_[static_cast<std::size_t>(b)]).norm();
   }
@@ -128,21 +137,32 @@ class RootPatch {
 
   /// No edge of the triangle repeats a half-edge of the crown or lies inside the crown.
   bool fits_crown(const Triangle& t) const {
-    return std::none_of(half_edges(t).begin(), half_edges(t).end(),
-                        [&](const HalfEdge& h) { return crown_half_edges_.contains(h); });
+    const std::array<HalfEdge, 3> edges = half_edges(t);
+    return std::none_of(edges.begin(), edges.end(), [&](const HalfEdge& h) { return is_of_crown(h); });
+  }
+
+  std::vector<HalfEdge> sorted_half_edges() const {
+    std::vector<HalfEdge> all;
+    all.reserve(3 * triangles_.size());
+    for (const Triangle& t : triangles_)
+      for (const HalfEdge& h : half_edges(t)) all.push_back(h);
+    std::sort(all.begin(), all.end());
+    return all;
   }
 
   /// Removes triangles at half-edges that stand twice; true if any was removed.
   bool remove_crowded_edges() {
-    std::map<HalfEdge, int> count;
-    for (const Triangle& t : triangles_)
-      for (const HalfEdge& h : half_edges(t)) ++count[h];
-    const std::size_t before = triangles_.size();
+    const std::vector<HalfEdge> all = sorted_half_edges();
+    std::vector<HalfEdge> twice;
+    for (std::size_t i = 1; i < all.size(); ++i)
+      if (all[i] == all[i - 1]) twice.push_back(all[i]);
+    if (twice.empty()) return false;
     std::erase_if(triangles_, [&](const Triangle& t) {
       const auto edges = half_edges(t);
-      return std::any_of(edges.begin(), edges.end(), [&](const HalfEdge& h) { return count[h] > 1; });
+      return std::any_of(edges.begin(), edges.end(),
+                         [&](const HalfEdge& h) { return std::binary_search(twice.begin(), twice.end(), h); });
     });
-    return triangles_.size() != before;
+    return true;
   }
 
   bool keep_largest_component() {
@@ -162,12 +182,15 @@ class RootPatch {
 
   /// Half-edges of crown and patch without a triangle on their other side.
   std::vector<HalfEdge> open_half_edges() const {
-    std::set<HalfEdge> all(crown_half_edges_);
-    for (const Triangle& t : triangles_)
-      for (const HalfEdge& h : half_edges(t)) all.insert(h);
+    const std::vector<HalfEdge> patch = sorted_half_edges();
+    const auto is_open = [&](const HalfEdge& h) {
+      const HalfEdge other{h.second, h.first};
+      return !std::binary_search(patch.begin(), patch.end(), other) && !is_of_crown(other);
+    };
     std::vector<HalfEdge> open;
-    for (const HalfEdge& h : all)
-      if (!all.contains({h.second, h.first})) open.push_back(h);
+    std::copy_if(border_half_edges_.begin(), border_half_edges_.end(), std::back_inserter(open), is_open);
+    std::copy_if(patch.begin(), patch.end(), std::back_inserter(open), is_open);
+    std::sort(open.begin(), open.end());
     return open;
   }
 
@@ -186,40 +209,48 @@ class RootPatch {
 
   /// Vertices of the patch alone whose triangles there form more than one fan while no gap explains it.
   std::vector<int> vertices_with_several_fans() const {
-    std::map<int, std::map<int, int>> link;  // per vertex: from -> to around it
-    const auto add = [&](const Triangle& t) {
-      for (std::size_t i = 0; i < 3; ++i) link[t[i]][t[(i + 1) % 3]] = t[(i + 2) % 3];
+    struct Turn {
+      int at, from, to;  // around vertex `at`
+      bool operator<(const Turn& other) const { return at < other.at; }
     };
-    std::set<int> of_patch;
-    for (const Triangle& t : triangles_) {
-      add(t);
-      of_patch.insert(t.begin(), t.end());
-    }
-    for (const Triangle& t : crown_.triangles)
-      if (std::any_of(t.begin(), t.end(), [&](int v) { return of_patch.contains(v); })) add(t);
+    std::vector<bool> of_patch(sites_.size(), false);
+    for (const Triangle& t : triangles_)
+      for (const int v : t) of_patch[static_cast<std::size_t>(v)] = true;
+    std::vector<Turn> turns;
+    const auto add = [&](const Triangle& t) {
+      for (std::size_t i = 0; i < 3; ++i)
+        if (of_patch[static_cast<std::size_t>(t[i])]) turns.push_back({t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
+    };
+    for (const Triangle& t : triangles_) add(t);
+    for (const Triangle& t : crown_.triangles) add(t);
+    std::stable_sort(turns.begin(), turns.end());
     std::vector<int> found;
-    for (const int v : of_patch) {
-      const auto& next = link[v];
-      std::set<int> targets;
-      for (const auto& [from, to] : next) targets.insert(to);
-      auto start = next.begin();
-      for (auto it = next.begin(); it != next.end(); ++it)
-        if (!targets.contains(it->first)) start = it;
-      std::size_t steps = 0;
-      for (auto it = start; it != next.end() && steps <= next.size();) {
+    for (auto first = turns.begin(); first != turns.end();) {
+      const auto last = std::find_if(first, turns.end(), [&](const Turn& t) { return t.at != first->at; });
+      const auto starting = [&](int from) {
+        return std::find_if(first, last, [&](const Turn& t) { return t.from == from; });
+      };
+      // An open fan starts where nothing leads to.
+      auto start = first;
+      for (auto it = first; it != last; ++it)
+        if (std::none_of(first, last, [&](const Turn& t) { return t.to == it->from; })) start = it;
+      auto it = start;
+      std::ptrdiff_t steps = 0;
+      do {
         ++steps;
-        it = next.find(it->second);
-        if (it == start) break;
-      }
-      if (steps != next.size()) found.push_back(v);
+        it = starting(it->to);
+      } while (it != last && it != start && steps < last - first);
+      if (steps != last - first) found.push_back(first->at);
+      first = last;
     }
     return found;
   }
 
   const TriangleMesh& crown_;
   const std::vector<Point>& sites_;
-  std::set<HalfEdge> crown_half_edges_;
-  std::vector<int> outer_;  // the border loop that the root continues
+  std::vector<HalfEdge> crown_half_edges_;   // sorted
+  std::vector<HalfEdge> border_half_edges_;  // those of the crown without a triangle on their other side, sorted
+  std::vector<int> outer_;                   // the border loop that the root continues
   std::vector<Triangle> triangles_;
 };
 
@@ -244,7 +275,7 @@ RestoredTooth restore_crown(const TriangleMesh& crown, const Joining& joining, c
     patch.bridge_to_crown();
     const TriangleMesh open = patch.joined();
     const FilledMesh filled = fill_holes(open);
-    const auto cuts = self_intersecting_triangles(filled.mesh);
+    const auto cuts = options.test_cuts ? self_intersecting_triangles(filled.mesh) : std::vector<std::pair<int, int>>{};
     if (cuts.empty()) {
       RestoredTooth tooth;
       tooth.mesh = filled.mesh;

@@ -8,7 +8,8 @@
 namespace rhizodont {
 
 struct RestoreOptions {
-  int rounds = 6;  ///< how often root triangles that cut others may be taken back and the gap filled anew, >= 0
+  bool test_cuts = true;  ///< look for triangles that cut each other
+  int rounds = 6;         ///< how often root triangles that cut others may be taken back and the gap filled anew, >= 0
 };
 
 /// A closed tooth that contains the crown as it was: vertices [0, crown_vertices) and triangles [0, crown_triangles)

@@ -14,7 +14,6 @@
 #include "mesh/diagnosis.hpp"
 #include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
-#include "mesh/quality.hpp"
 #include "pipeline/closed_crown.hpp"
 #include "pipeline/crown_input.hpp"
 #include "pipeline/guiding_cloud.hpp"
@@ -37,8 +36,8 @@ namespace {
 void require_options_in_range(const CompleteOptions& options) {
   if (!(options.e >= 0.2 && options.e <= 2))
     throw UsageError(fmt::format("e = {} mm is out of its range, 0.2 to 2 mm.", options.e));
-  if (!(options.transition >= 0 && options.transition <= 5))
-    throw UsageError(fmt::format("A transition of {} mm is out of its range, 0 to 5 mm.", options.transition));
+  if (options.transition && !(*options.transition >= 0 && *options.transition <= 5))
+    throw UsageError(fmt::format("A transition of {} mm is out of its range, 0 to 5 mm.", *options.transition));
   if (!(options.millimetres_per_unit > 0)) throw UsageError("The unit must be a positive number of millimetres.");
   if (options.threads < 0) throw UsageError("The number of threads cannot be negative.");
   if (options.fdi) tooth_type_of_fdi(*options.fdi);
@@ -113,7 +112,17 @@ void note_fusion(const FusedTooth& fused, CompletionRecord& record) {
   record.steiner_points = fused.steiner_points;
   record.crown_triangles_direct = fused.crown_triangles_direct;
   record.crown_triangles_restored = fused.tooth.triangles_brought_back;
+  record.non_delaunay_edges_left = fused.non_delaunay_edges_left;
+  record.root_sites = fused.root_sites;
+  record.sites_without_cell = fused.sites_without_cell;
+  record.triangles_filled = fused.tooth.triangles_filled;
+  record.holes_filled = fused.tooth.holes_filled;
+  const RootRemeshing& done = fused.remeshing;
+  record.remeshing_operations = done.splits + done.collapses + done.flips + done.mended;
+  record.sharpest_notch = fused.sharpest_notch;
   record.transition_vertices = static_cast<int>(fused.transition.vertices.size());
+  record.transition_width_mm = fused.transition.width;
+  record.transition_largest_move_mm = fused.transition.largest_move;
   record.warnings.insert(record.warnings.end(), fused.warnings.begin(), fused.warnings.end());
 }
 
@@ -206,7 +215,7 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
 
   clock.begin("joining");
   FuseOptions fuse;
-  fuse.transition.band = options.transition;
+  fuse.transition.width = options.transition;
   const FusedTooth fused = fuse_crown_and_root(crown.mesh, surface, record.growth_axis, fuse);
   note_fusion(fused, record);
   note_lengths(crown.mesh, fused.tooth.mesh, record);
@@ -218,9 +227,6 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   std::fill_n(tooth.source.begin(), crown.old_vertices.size(), VertexSource::scan);
   for (const int v : fused.transition.vertices) tooth.source[static_cast<std::size_t>(v)] = VertexSource::transition;
   record.promises = prove_promises(input, tooth.mesh);
-  std::vector<bool> is_new(tooth.mesh.triangles.size(), true);
-  std::fill_n(is_new.begin(), record.kept_triangles, false);
-  record.new_triangles = quality(tooth.mesh, is_new).value_or(QualityFigures{});
   return tooth;
 }
 

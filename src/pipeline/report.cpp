@@ -76,7 +76,24 @@ Json joining_json(const CompletionRecord& record) {
           {"steiner_points", record.steiner_points},
           {"crown_triangles_from_dual", record.crown_triangles_direct},
           {"crown_triangles_restored", record.crown_triangles_restored},
-          {"transition_vertices", record.transition_vertices}};
+          {"non_delaunay_edges_left", record.non_delaunay_edges_left},
+          {"root_sites", record.root_sites},
+          {"sites_without_cell", record.sites_without_cell},
+          {"triangles_filled", record.triangles_filled},
+          {"holes_filled", record.holes_filled},
+          {"remeshing_operations", record.remeshing_operations},
+          {"border_sharpest_notch_degrees", record.sharpest_notch},
+          {"transition_vertices", record.transition_vertices},
+          {"transition_width_mm", record.transition_width_mm},
+          {"transition_largest_move_mm", record.transition_largest_move_mm}};
+}
+
+Json new_triangles_json(const NewTriangleFigures& figures) {
+  Json json = figures.all.value_or(QualityFigures{});
+  if (figures.inner) json["inner"] = *figures.inner;
+  if (figures.at_border) json["at_border"] = *figures.at_border;
+  json["promise_3_holds"] = figures.holds();
+  return json;
 }
 
 Json stages_json(const std::vector<StageRecord>& stages) {
@@ -101,7 +118,7 @@ std::string completion_report(const CompletedTooth& tooth, const CompleteOptions
        {{"e_mm", options.e},
         {"cap", options.cap == CapHandling::keep ? "keep" : "drop"},
         {"millimetres_per_unit", options.millimetres_per_unit},
-        {"transition_mm", options.transition},
+        {"transition_mm", options.transition ? Json(*options.transition) : Json(nullptr)},
         {"steering", steering_json(options.steering)},
         {"threads", options.threads}}},
       {"fdi", {{"number", record.fdi}, {"guessed", record.fdi_guessed}}},
@@ -109,7 +126,7 @@ std::string completion_report(const CompletedTooth& tooth, const CompleteOptions
       {"crown", crown_json(record)},
       {"root", root_json(record)},
       {"joining", joining_json(record)},
-      {"new_triangles", record.new_triangles},
+      {"new_triangles", new_triangles_json(record.promises.new_triangles)},
       {"promises", record.promises},
       {"stages", stages_json(record.stages)},
       {"warnings", record.warnings},

@@ -79,7 +79,7 @@ TEST(Check, AToothThatKeepsItsCrownPasses) {
   ASSERT_TRUE(report.crown.deviation);
   EXPECT_EQ(report.crown.deviation->max, 0);
   EXPECT_EQ(report.crown.deviation->bins[0], report.crown.vertices);
-  EXPECT_EQ(report.new_triangles->triangles, pair.tooth.triangles.size() - pair.crown.triangles.size());
+  EXPECT_EQ(report.new_triangles.all->triangles, pair.tooth.triangles.size() - pair.crown.triangles.size());
   EXPECT_EQ(report.all_triangles->triangles, pair.tooth.triangles.size());
 }
 
@@ -297,7 +297,8 @@ TEST(CheckSolid, AToothWithoutTrianglesFailsWithoutThrowing) {
   const CheckReport report = check(good_pair().crown, {});
   expect_failure(report, "the tooth has no triangles");
   EXPECT_FALSE(report.crown.deviation);
-  EXPECT_FALSE(report.new_triangles);
+  EXPECT_FALSE(report.new_triangles.all);
+  EXPECT_FALSE(report.new_triangles.holds());
   EXPECT_TRUE(nlohmann::ordered_json(report)["crown"]["deviation"].is_null());
 }
 
