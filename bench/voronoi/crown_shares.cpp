@@ -3,8 +3,12 @@
 
 #include "completion/complete_points.hpp"
 #include "completion/frame.hpp"
+#include "fusion/crown_border.hpp"
+#include "fusion/edge_lengths.hpp"
 #include "fusion/join.hpp"
+#include "fusion/root_sites.hpp"
 #include "fusion/separate.hpp"
+#include "fusion/surface_walk.hpp"
 #include "isosurface/guiding_surface.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
@@ -16,12 +20,17 @@
 #include "skirt/skirt.hpp"
 #include "tables.hpp"
 #include "voronoi/delaunay_mesh.hpp"
+#include "voronoi/restricted_voronoi.hpp"
 #include "voronoi/voronoi_edge.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <limits>
+#include <span>
+#include <string>
 
 namespace rhizodont {
 namespace {
@@ -43,14 +52,17 @@ CrownCase prepare(const TriangleMesh& input, int fdi, const CompletionModels::Co
   result.crown = keep_crown(input, keep, "cap").mesh;
   const CrownFrame frame =
       canonical_frame(result.crown, fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))]);
-  const OrientedPoints predicted = complete_points(result.crown, fdi, frame.frame, models.network);
-  const GuidingCloud cloud = assemble_guiding_cloud(result.crown, predicted);
+  const PredictedTooth predicted = complete_points(result.crown, fdi, frame.frame, models.network);
+  const GuidingCloud cloud = assemble_guiding_cloud(result.crown, predicted.cloud);
   const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));
   result.surface = guiding_surface(cloud.samples, cloud.confidence, seeds).surface.mesh;
   const Eigen::Vector3d axis = frame.frame.direction_to_world(Eigen::Vector3d::UnitZ());
-  const Separation separation = separate_crown_and_root(result.surface, result.crown, axis);
-  for (std::size_t v = 0; v < result.surface.vertices.size(); ++v)
-    if (separation.is_root[v]) result.root.push_back(result.surface.vertices[v]);
+  const CrownBorder border = find_crown_border(result.crown);
+  const auto is_root =
+      separate_crown_and_root(result.surface, crown_distances(result.surface, result.crown, border), axis);
+  const SurfaceWalk walk(result.surface);
+  result.root = root_sites(walk, is_root, result.crown, border,
+                           edge_lengths(result.crown, border, mean_edge_length(result.surface)));
   return result;
 }
 
@@ -58,97 +70,127 @@ CrownCase prepare(const TriangleMesh& input, int fdi, const CompletionModels::Co
 struct Reasons {
   int crown_site = 0;        // no Voronoi edge: vertices of the crown are nearer to its axis everywhere
   int root_site = 0;         // likewise with a vertex of the root on one side at least
-  int off_edge = 0;          // the guiding surface crosses the axis beyond the Voronoi edge
-  int no_crossing = 0;       // or not at all
-  std::vector<double> gaps;  // mm, from the edge's end to the crossing
+  int no_crossing = 0;       // the guiding surface does not cross the axis
+  std::vector<double> gaps;  // mm, ascending: it does, so far from the Voronoi edge
 };
 
 struct Share {
   int triangles = 0;
-  int direct = 0;
+  int direct = 0;  // given by the dual on the guiding surface
+  int strong = 0;  // given by the dual on the crown itself
+  int both = 0;
   int steiner = 0;
   int edges_left = 0;
-  int strong = 0;  // triangles all of whose pieces the crown's own surface gives
-  int both = 0;
+  int tested = 0;       // pieces held against the interval test
+  int disagreeing = 0;  // that the test judges otherwise than the dual
   Reasons reasons;
 };
 
+/// How far from a piece's Voronoi edge the surface crosses its axis: 0 if within, infinite if nowhere.
+double gap_to_edge(const TriangleMesh& surface, const VoronoiEdge& edge) {
+  double gap = std::numeric_limits<double>::infinity();
+  if (edge.is_empty()) return gap;
+  for (const double at : outward_crossings(surface, edge))
+    gap = std::min(gap, std::max({0.0, edge.low - at, at - edge.high}));
+  return gap;
+}
+
+void examine_pieces(const CrownCase& c, const DelaunayMesh& delaunay, const Joining& joining, Share& share) {
+  const int first_root = joining.crown_vertices + joining.steiner_points;
+  constexpr std::size_t every = 5;  // of the pieces that are in the dual is tested
+  for (std::size_t i = 0; i < delaunay.mesh.triangles.size(); ++i) {
+    const Triangle t = lowest_first(delaunay.mesh.triangles[i]);
+    const bool in_dual = std::binary_search(joining.triangles.begin(), joining.triangles.end(), t);
+    if (in_dual && i % every != 0) continue;
+    const VoronoiEdge edge = voronoi_edge(joining.sites, t);
+    const double gap = gap_to_edge(c.surface, edge);
+    ++share.tested;
+    if (in_dual != (gap == 0)) ++share.disagreeing;
+    if (in_dual) continue;
+    if (edge.is_empty()) {
+      const bool by_root = edge.low_site >= first_root || edge.high_site >= first_root;
+      ++(by_root ? share.reasons.root_site : share.reasons.crown_site);
+    } else if (std::isinf(gap)) {
+      ++share.reasons.no_crossing;
+    } else {
+      share.reasons.gaps.push_back(gap);
+    }
+  }
+  std::sort(share.reasons.gaps.begin(), share.reasons.gaps.end());
+}
+
 Share measure(const CrownCase& c) {
-  Share share;
   const Joining joining = join_crown_and_root(c.crown, c.root, c.surface);
   const DelaunayMesh delaunay = make_delaunay_mesh(c.crown);
+  const std::vector<bool> strong =
+      triangles_given_by_dual(c.crown, delaunay, restricted_voronoi(delaunay.mesh.vertices, delaunay.mesh).triangles);
+  Share share;
   share.triangles = static_cast<int>(c.crown.triangles.size());
   share.direct = joining.crown_triangles_direct;
   share.steiner = joining.steiner_points;
   share.edges_left = delaunay.edges_left;
-
-  const StrongDelaunay own = test_strong_delaunay(delaunay.mesh);
-  std::vector<bool> strong(c.crown.triangles.size(), true);
-  for (std::size_t t = 0; t < delaunay.mesh.triangles.size(); ++t)
-    if (!own.triangle_in_dual[t]) strong[static_cast<std::size_t>(delaunay.parent_triangle[t])] = false;
   for (std::size_t t = 0; t < strong.size(); ++t) {
     share.strong += strong[t] ? 1 : 0;
     share.both += strong[t] && joining.crown_in_dual[t] ? 1 : 0;
   }
-
-  const int first_root = joining.crown_vertices + joining.steiner_points;
-  for (const Triangle& t : delaunay.mesh.triangles) {
-    if (std::binary_search(joining.triangles.begin(), joining.triangles.end(), lowest_first(t))) continue;
-    const VoronoiEdge edge = voronoi_edge(joining.sites, t);
-    if (edge.is_empty()) {
-      ++(edge.low_site >= first_root || edge.high_site >= first_root ? share.reasons.root_site
-                                                                     : share.reasons.crown_site);
-      continue;
-    }
-    double gap = 1e9;
-    for (const double at : outward_crossings(c.surface, edge))
-      gap = std::min(gap, std::max({0.0, edge.low - at, at - edge.high}));
-    if (gap > 1e8) {
-      ++share.reasons.no_crossing;
-    } else {
-      ++share.reasons.off_edge;
-      share.reasons.gaps.push_back(gap);
-    }
-  }
+  examine_pieces(c, delaunay, joining, share);
   return share;
 }
 
 double percent(int part, int whole) { return 100.0 * part / whole; }
 
+void add(const Share& s, Share& total) {
+  total.triangles += s.triangles;
+  total.direct += s.direct;
+  total.strong += s.strong;
+  total.both += s.both;
+  total.steiner += s.steiner;
+  total.edges_left += s.edges_left;
+  total.tested += s.tested;
+  total.disagreeing += s.disagreeing;
+  total.reasons.crown_site += s.reasons.crown_site;
+  total.reasons.root_site += s.reasons.root_site;
+  total.reasons.no_crossing += s.reasons.no_crossing;
+  total.reasons.gaps.insert(total.reasons.gaps.end(), s.reasons.gaps.begin(), s.reasons.gaps.end());
+  std::sort(total.reasons.gaps.begin(), total.reasons.gaps.end());
+}
+
+void print_row(const std::string& name, const Share& s) {
+  const auto& gaps = s.reasons.gaps;
+  const std::string beside = gaps.empty() ? "0" : fmt::format("{} ({:.3f})", gaps.size(), gaps[gaps.size() / 2]);
+  fmt::print("| {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {} | {} | {} | {} | {} | {} |\n", name, s.triangles,
+             s.steiner, s.edges_left, percent(s.strong, s.triangles), percent(s.direct, s.triangles),
+             percent(s.both, s.strong), s.reasons.crown_site, s.reasons.root_site, beside, s.reasons.no_crossing,
+             s.tested, s.disagreeing);
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 void print_crown_shares(const std::filesystem::path& data_folder) {
   const CompletionModels models = CompletionModels::load(default_models_folder());
-  fmt::print("## Crown triangles given by the dual\n\n");
   fmt::print(
-      "| Crown | triangles | Steiner points | edges left | strong-Delaunay % | direct % | direct of strong % | "
-      "missing pieces: crown's sites | root's sites | surface off the edge (median mm) | surface absent |\n");
-  fmt::print("|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+      "## Crown triangles given by the dual\n\n"
+      "Strong: given by the dual on the crown's own surface, after Steiner points. Direct: given on the guiding "
+      "surface. Missing pieces (triangles cut by Steiner points) by reason: no Voronoi edge because of other "
+      "sites of the crown, or of the root; guiding surface beside the edge (median distance), or absent.\n\n"
+      "| Crown | triangles | Steiner points | edges left | strong % | direct % | direct of strong % | crown's "
+      "sites | root's sites | beside (mm) | absent | interval test: pieces | against the dual |\n"
+      "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
   for (const char* group : {"validation", "crowns/patient0", "crowns/patient1"}) {
     Share total;
     for (int fdi = 11; fdi <= 48; ++fdi) {
       const auto path = data_folder / group / fmt::format("crown_{}.ply", fdi);
       if (!std::filesystem::exists(path)) continue;
       try {
-        Share s = measure(prepare(load_mesh(path).mesh, fdi, models.content()));
-        std::sort(s.reasons.gaps.begin(), s.reasons.gaps.end());
-        const double median = s.reasons.gaps.empty() ? 0 : s.reasons.gaps[s.reasons.gaps.size() / 2];
-        fmt::print("| {} {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {} | {} | {} ({:.3f}) | {} |\n", group, fdi,
-                   s.triangles, s.steiner, s.edges_left, percent(s.strong, s.triangles), percent(s.direct, s.triangles),
-                   percent(s.both, s.strong), s.reasons.crown_site, s.reasons.root_site, s.reasons.off_edge, median,
-                   s.reasons.no_crossing);
-        total.triangles += s.triangles;
-        total.direct += s.direct;
-        total.strong += s.strong;
-        total.both += s.both;
+        const Share s = measure(prepare(load_mesh(path).mesh, fdi, models.content()));
+        print_row(fmt::format("{} {}", group, fdi), s);
+        add(s, total);
       } catch (const Error& error) {
         fmt::print("| {} {} | {} |\n", group, fdi, error.what());
       }
-      std::fflush(stdout);
     }
-    fmt::print("| {} together | {} | | | {:.2f} | {:.2f} | {:.2f} | | | | |\n", group, total.triangles,
-               percent(total.strong, total.triangles), percent(total.direct, total.triangles),
-               percent(total.both, total.strong));
+    print_row(fmt::format("**{}**", group), total);
   }
   fmt::print("\n");
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -135,6 +136,69 @@ TEST(GradNormal, MeshesAnEllipsoidWithinTheAnglesOnceFineEnough) {
   EXPECT_GT(angles.front(), 35.2);
   EXPECT_LT(angles.back(), 101.5);
   for (const Point& p : surface.mesh.vertices) EXPECT_NEAR(p.cwiseQuotient(radii).norm(), 1.0, 1e-6);
+}
+
+/// The field turned about the origin, which for the surface is as if the tiling were.
+ScalarField turned(const ScalarField& field, const Eigen::Matrix3d& rotation) {
+  return [field, rotation](const Point& p) {
+    const FieldSample sample = field(rotation.transpose() * p);
+    return FieldSample{sample.value, rotation * sample.gradient};
+  };
+}
+
+/// Range of angles where e is a fifth of the smallest radius of curvature, wherever and however the tiling lies.
+TEST(GradNormal, KeepsTheAnglesForAnyPlaceAndDirectionOfTheTiling) {
+  const Eigen::Vector3d radii(1.6, 1.3, 1.45);
+  const double e = 0.2 * 1.3 * 1.3 / 1.6;
+  for (int i = 0; i < 8; ++i) {
+    const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(0.7 * i, Eigen::Vector3d(1, 0.3 * i, -0.5).normalized()) *
+                                      Eigen::AngleAxisd(0.4 * i, Eigen::Vector3d::UnitX()))
+                                         .toRotationMatrix();
+    IsosurfaceOptions options;
+    options.e = e;
+    options.origin = e * Point(0.13 * i, -0.29 * i, 0.41 * i);
+    const ScalarField field = turned(ellipsoid(radii), rotation);
+    const std::vector<Point> seeds{rotation * Point(1.6, 0.0, 0.0)};
+    const Isosurface surface = grad_normal(field, 0.0, seeds, options);
+    expect_solid(surface, 2);
+    const auto angles = sorted_angles(surface.mesh);
+    EXPECT_GT(angles.front(), 35.2) << i;
+    EXPECT_LT(angles.back(), 101.55) << i;
+    for (const Point& p : surface.mesh.vertices)
+      EXPECT_NEAR((rotation.transpose() * p).cwiseQuotient(radii).norm(), 1.0, 1e-6);
+
+    const Isosurface jagged = mid_normal(field, 0.0, seeds, options);
+    expect_solid(jagged, 2);
+    const auto tiling_angles = sorted_angles(jagged.mesh);
+    EXPECT_NEAR(tiling_angles.front(), 45.0, 1e-6);
+    EXPECT_NEAR(tiling_angles.back(), 90.0, 1e-6);
+  }
+}
+
+/// A surface of a radius of curvature of e or less all over: no promise of angles, but a solid.
+TEST(GradNormal, StaysASolidOnSurfacesAsSmallAsTheTiling) {
+  for (const double radius : {0.35, 0.5, 0.7, 1.0})
+    for (int i = 0; i < 5; ++i) {
+      IsosurfaceOptions options;
+      options.e = 0.5;
+      options.origin = Point(0.11 * i, 0.07 * i, -0.05 * i);
+      const std::vector<Point> seeds{Point(radius, 0.0, 0.0)};
+      const Isosurface surface = grad_normal(sphere(radius), 0.0, seeds, options);
+      expect_solid(surface, 2);
+      for (const Point& p : surface.mesh.vertices) EXPECT_NEAR(p.norm(), radius, 1e-5);
+    }
+}
+
+TEST(GradNormal, ScalesWithTheSurface) {
+  const std::vector<Point> seeds{Point(2.0, 0.0, 0.0)}, seeds4{Point(8.0, 0.0, 0.0)};
+  IsosurfaceOptions options = with_e(0.2);
+  const Isosurface small = grad_normal(sphere(2.0), 0.0, seeds, options);
+  options.e *= 4.0;
+  options.origin *= 4.0;
+  const Isosurface large = grad_normal(sphere(8.0), 0.0, seeds4, options);
+  EXPECT_EQ(small.mesh.triangles, large.mesh.triangles);
+  for (std::size_t v = 0; v < small.mesh.vertices.size(); ++v)
+    EXPECT_LT((4.0 * small.mesh.vertices[v] - large.mesh.vertices[v]).norm(), 1e-5);
 }
 
 TEST(GradNormal, KeepsTheHoleOfATorus) {
