@@ -86,12 +86,11 @@ struct Share {
   Reasons reasons;
 };
 
-/// How far from a piece's Voronoi edge the surface crosses its axis: 0 if within, infinite if nowhere.
+/// How far from a piece's Voronoi edge the surface crosses its axis (mm): at most 0 if within, infinite if nowhere.
 double gap_to_edge(const TriangleMesh& surface, const VoronoiEdge& edge) {
   double gap = std::numeric_limits<double>::infinity();
   if (edge.is_empty()) return gap;
-  for (const double at : outward_crossings(surface, edge))
-    gap = std::min(gap, std::max({0.0, edge.low - at, at - edge.high}));
+  for (const double at : outward_crossings(surface, edge)) gap = std::min(gap, std::max(edge.low - at, at - edge.high));
   return gap;
 }
 
@@ -105,7 +104,8 @@ void examine_pieces(const CrownCase& c, const DelaunayMesh& delaunay, const Join
     const VoronoiEdge edge = voronoi_edge(joining.sites, t);
     const double gap = gap_to_edge(c.surface, edge);
     ++share.tested;
-    if (in_dual != (gap == 0)) ++share.disagreeing;
+    constexpr double rounding = 1e-9;  // mm: the interval test is not exact
+    if (in_dual ? gap > rounding : gap < -rounding) ++share.disagreeing;
     if (in_dual) continue;
     if (edge.is_empty()) {
       const bool by_root = edge.low_site >= first_root || edge.high_site >= first_root;

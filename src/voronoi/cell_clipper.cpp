@@ -17,9 +17,12 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace rhizodont {
 namespace {
@@ -31,13 +34,43 @@ constexpr double outwards = 1 + 1e-9;  // covers the rounding of the bounds them
 
 constexpr int facet_edge(CellLine line) { return -1 - line; }
 
+/// Indices of points along Morton's space-filling curve.
+std::vector<std::int32_t> along_a_curve(const std::vector<Point>& points) {
+  Eigen::AlignedBox3d box;
+  for (const Point& p : points) box.extend(p);
+  constexpr int bits = 10;  // per axis
+  const double widest = std::max(box.sizes().maxCoeff(), std::numeric_limits<double>::min());
+  std::vector<std::pair<std::uint32_t, std::int32_t>> keys(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3d place = (points[i] - box.min()) / widest * ((1 << bits) - 1);
+    std::uint32_t key = 0;
+    for (int bit = bits - 1; bit >= 0; --bit)
+      for (int axis = 0; axis < 3; ++axis) key = 2 * key + ((static_cast<std::uint32_t>(place[axis]) >> bit) & 1);
+    keys[i] = {key, static_cast<std::int32_t>(i)};
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<std::int32_t> order(points.size());
+  std::transform(keys.begin(), keys.end(), order.begin(), [](const auto& key) { return key.second; });
+  return order;
+}
+
+std::vector<Point> in_order(const std::vector<Point>& points, const std::vector<std::int32_t>& order) {
+  std::vector<Point> result;
+  result.reserve(points.size());
+  for (const std::int32_t i : order) result.push_back(points[static_cast<std::size_t>(i)]);
+  return result;
+}
+
 }  // namespace
 
 SiteNeighbours::SiteNeighbours(const std::vector<Point>& sites, std::size_t per_site)
-    : sites_(sites), index_(sites), per_site_(std::min(per_site, sites.size())), nearest_(per_site_ * sites.size()) {
+    : order_(along_a_curve(sites)),
+      index_(in_order(sites, order_)),
+      per_site_(std::min(per_site, sites.size())),
+      nearest_(per_site_ * sites.size()) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, sites.size(), 256), [&](const auto& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i)
-      index_.nearest(sites[i], std::span(nearest_).subspan(i * per_site_, per_site_));
+      index_.nearest(index_.points()[i], std::span(nearest_).subspan(i * per_site_, per_site_));
   });
 }
 

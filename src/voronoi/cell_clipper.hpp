@@ -14,20 +14,23 @@
 
 namespace rhizodont {
 
-/// The sites of a diagram with the nearest of each, ascending by distance; the first is usually the site itself.
+/// The sites of a diagram in an order in which neighbours are stored near each other, with the nearest of each. Sites
+/// are numbered by this order in here; `original` gives the number that the caller knows and that decides ties.
 class SiteNeighbours {
  public:
   /// `per_site`: how many are listed at first, at most as many as there are sites.
   SiteNeighbours(const std::vector<Point>& sites, std::size_t per_site);
 
-  const std::vector<Point>& sites() const { return sites_; }
+  const std::vector<Point>& sites() const { return index_.points(); }
   const NearestVertexIndex& index() const { return index_; }
+  std::int32_t original(std::int32_t site) const { return order_[static_cast<std::size_t>(site)]; }
+  /// Ascending by distance; the first is usually the site itself.
   std::span<const NearVertex> of(std::int32_t site) const {
     return std::span(nearest_).subspan(static_cast<std::size_t>(site) * per_site_, per_site_);
   }
 
  private:
-  const std::vector<Point>& sites_;
+  std::vector<std::int32_t> order_;
   NearestVertexIndex index_;
   std::size_t per_site_;
   std::vector<NearVertex> nearest_;
@@ -62,7 +65,7 @@ class CellClipper {
   const std::vector<CellCorner>& clip_to_cell(std::int32_t site);
 
  private:
-  Site site(std::int32_t i) const { return {&sites_[static_cast<std::size_t>(i)], i}; }
+  Site site(std::int32_t i) const { return {&sites_[static_cast<std::size_t>(i)], neighbours_.original(i)}; }
   std::span<const NearVertex> longer_list(std::int32_t site, std::size_t than);
   void measure_reach();
   int side(std::int32_t i, std::int32_t j, CellLine arriving, CellLine leaving) const;

@@ -135,13 +135,14 @@ void check_input(const std::vector<Point>& sites, const TriangleMesh& surface,
     if (!(d >= 0 && std::isfinite(d))) throw UsageError("Densities must be finite and not negative.");
 }
 
-void add_moments(const std::vector<BlockResult>& blocks, const std::vector<Point>& sites, RestrictedVoronoi& result) {
+void add_moments(const std::vector<BlockResult>& blocks, const std::vector<Point>& sites,
+                 const SiteNeighbours& neighbours, RestrictedVoronoi& result) {
   result.cell_area.assign(sites.size(), 0);
   result.cell_mass.assign(sites.size(), 0);
   result.cell_centroid.assign(sites.size(), Point::Zero());
   for (const BlockResult& block : blocks) {
     for (const Moments& m : block.moments) {
-      const auto s = static_cast<std::size_t>(m.site);
+      const auto s = static_cast<std::size_t>(neighbours.original(m.site));
       result.cell_area[s] += m.area;
       result.cell_mass[s] += m.mass;
       result.cell_centroid[s] += m.mass_times_place;
@@ -187,11 +188,14 @@ RestrictedVoronoi restricted_voronoi(const std::vector<Point>& sites, const Tria
   RestrictedVoronoi result;
   result.site_has_cell.assign(sites.size(), false);
   for (const BlockResult& block : blocks) {
-    result.triangles.insert(result.triangles.end(), block.triangles.begin(), block.triangles.end());
-    for (const std::int32_t s : block.sites) result.site_has_cell[static_cast<std::size_t>(s)] = true;
+    for (const auto& [i, j, k] : block.triangles)
+      result.triangles.push_back(
+          lowest_first({neighbours.original(i), neighbours.original(j), neighbours.original(k)}));
+    for (const std::int32_t s : block.sites)
+      result.site_has_cell[static_cast<std::size_t>(neighbours.original(s))] = true;
   }
   std::sort(result.triangles.begin(), result.triangles.end());
-  if (options.cell_moments) add_moments(blocks, sites, result);
+  if (options.cell_moments) add_moments(blocks, sites, neighbours, result);
   return result;
 }
 

@@ -9,7 +9,7 @@
 namespace rhizodont {
 
 struct RestrictedVoronoiOptions {
-  int neighbours = 24;        ///< nearest sites listed per site at first, >= 1; the lists grow where a cell needs more
+  int neighbours = 16;        ///< nearest sites listed per site at first, >= 1; the lists grow where a cell needs more
   bool cell_moments = false;  ///< also compute areas, masses and centroids of the cells
   std::vector<double>
       density;  ///< for masses and centroids: per vertex of the surface, >= 0, linear in between; empty: 1
