@@ -23,10 +23,11 @@ void check(const CompletionSampleOptions& options) {
   if (options.input_points == 0 || options.target_points == 0)
     throw UsageError("A training sample needs at least one input and one target point.");
   if (options.type < -1 || options.type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
-  if (!share(options.paper_crop_share) || !share(options.gap_probability))
+  if (!share(options.paper_crop_share) || !share(options.gap_probability) || !share(options.skirt_probability) ||
+      !share(options.lost_turn_share))
     throw UsageError("Shares of training samples lie between 0 and 1.");
-  if (!(options.scanner_noise_mm >= 0) || !(options.rotation_jitter_radians >= 0))
-    throw UsageError("Noise and jitter of training samples cannot be negative.");
+  if (!(options.scanner_noise_mm >= 0) || !(options.skirt_mm >= 0) || !(options.rotation_jitter_radians >= 0))
+    throw UsageError("Noise, skirt and jitter of training samples cannot be negative.");
 }
 
 struct SurfacePoint {
@@ -84,8 +85,9 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
   sample.type = static_cast<int>(random.index(tooth_type_count));
   if (options.type >= 0) sample.type = options.type;
   const SyntheticTooth tooth = generate_tooth(families, sample.type, random.bits());
-  const CroppedCrown crop = draw_cropped_crown(tooth, options.paper_crop_share, options.gap_probability, random);
-  const double jitter = options.rotation_jitter_radians;
+  CroppedCrown crop = draw_cropped_crown(tooth, options.paper_crop_share, options.gap_probability, random);
+  if (random.chance(options.skirt_probability)) add_skirt_remains(crop.mesh, options.skirt_mm, random);
+  const double jitter = options.rotation_jitter_radians * (random.chance(options.lost_turn_share) ? 3 : 1);
   sample.frame = frame_of_crop(crop.mesh, random.uniform(-jitter, jitter) - tooth.crown_turn);
 
   sample.input.reserve(3 * options.input_points);

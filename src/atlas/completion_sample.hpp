@@ -21,6 +21,9 @@ struct CompletionSampleOptions {
                                           ///< near the cemento-enamel junction as scans are
   double scanner_noise_mm = 0.02;         ///< standard deviation of the noise on the input points, >= 0
   double gap_probability = 0.3;           ///< share of crowns with missing interproximal surface, 0..1
+  double skirt_probability = 0.2;         ///< share of crowns with remains of the gum along the cut, 0..1
+  double skirt_mm = 0.9;                  ///< their largest width, >= 0
+  double lost_turn_share = 0.05;          ///< share of crowns whose rotation is off by up to three times the jitter
   double rotation_jitter_radians = 0.15;  ///< half width of the error of the rotation about the growth axis, >= 0
 };
 

@@ -207,4 +207,52 @@ CroppedCrown draw_cropped_crown(const SyntheticTooth& tooth, double paper_share,
   throw NoResultError("No gum line left a crown in one piece with one border.");
 }
 
+void add_skirt_remains(TriangleMesh& crown, double width_mm, RandomStream& random) {
+  // Directed border edges: from each vertex to the next.
+  std::unordered_map<std::uint64_t, int> uses;
+  const auto key = [](int a, int b) { return (static_cast<std::uint64_t>(a) << 32) | static_cast<std::uint32_t>(b); };
+  for (const Triangle& t : crown.triangles)
+    for (std::size_t i = 0; i < 3; ++i) ++uses[key(t[i], t[(i + 1) % 3])];
+  std::vector<std::pair<int, int>> border;
+  for (const Triangle& t : crown.triangles)
+    for (std::size_t i = 0; i < 3; ++i)
+      if (!uses.contains(key(t[(i + 1) % 3], t[i]))) border.emplace_back(t[i], t[(i + 1) % 3]);
+
+  struct Flap {
+    double middle, half_width, length, fall;
+  };
+  std::vector<Flap> flaps;
+  for (std::uint64_t i = 0, count = 1 + random.index(3); i < count; ++i)
+    flaps.push_back({random.uniform(0, 2 * std::numbers::pi), random.uniform(0.2, 0.9),
+                     width_mm * random.uniform(0.3, 1.0), random.uniform(-0.3, 1.2)});
+  Point middle = Point::Zero();
+  for (const auto& [from, to] : border)
+    middle += crown.vertices[static_cast<std::size_t>(from)] / static_cast<double>(border.size());
+
+  std::map<int, int> outer;  // border vertex to the flap's edge; itself where there is no flap
+  const auto outer_of = [&](int v) {
+    const auto [found, is_new] = outer.try_emplace(v, v);
+    if (!is_new) return found->second;
+    const Point p = crown.vertices[static_cast<std::size_t>(v)];
+    const Eigen::Vector2d d = p.head<2>() - middle.head<2>();
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Flap& flap : flaps) {
+      const double a = angle_between(std::atan2(d.y(), d.x()), flap.middle) / flap.half_width;
+      if (std::abs(a) >= 1) continue;
+      const Eigen::Vector2d away = d.normalized() * std::cos(flap.fall);
+      sum += flap.length * (1 - a * a) * Eigen::Vector3d(away.x(), away.y(), -std::sin(flap.fall));
+    }
+    if (sum.norm() > 0.05) {
+      found->second = static_cast<int>(crown.vertices.size());
+      crown.vertices.emplace_back(p + sum);
+    }
+    return found->second;
+  };
+  for (const auto& [from, to] : border) {
+    const int a = outer_of(from), b = outer_of(to);
+    if (a != from) crown.triangles.push_back({to, from, a});
+    if (b != to) crown.triangles.push_back({to, a, b});
+  }
+}
+
 }  // namespace rhizodont

@@ -40,4 +40,8 @@ struct CroppedCrown {
 CroppedCrown draw_cropped_crown(const SyntheticTooth& tooth, double paper_share, double gap_probability,
                                 RandomStream& random);
 
+/// Adds what a careless cut leaves of the gum: one to three flaps along the border, up to `width_mm` wide, that turn
+/// outwards or hang down. The crown's own triangles stay first and unchanged. @param crown a disc
+void add_skirt_remains(TriangleMesh& crown, double width_mm, RandomStream& random);
+
 }  // namespace rhizodont

@@ -167,6 +167,9 @@ Affine fit_axes(const std::vector<Point>& points, const std::vector<Eigen::Vecto
 Affine fit_from_several_turns(const std::vector<Point>& points, const std::vector<Eigen::Vector3d>& normals,
                               const CrownSurface& surface, const Affine& start) {
   const NearestVertexIndex index(surface.points);
+  std::vector<Point> few;
+  std::vector<Eigen::Vector3d> few_normals;
+  for (std::size_t i = 0; i < points.size(); i += 3) few.push_back(points[i]), few_normals.push_back(normals[i]);
   Affine best;
   for (int i = -1; i <= 1; ++i) {
     const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.35 * i, Eigen::Vector3d::UnitZ()).toRotationMatrix();
@@ -175,7 +178,7 @@ Affine fit_from_several_turns(const std::vector<Point>& points, const std::vecto
     Point middle = Point::Zero();
     for (const Point& p : points) middle += p / static_cast<double>(points.size());
     turned.shift = start.linear * middle + start.shift - turned.linear * middle;
-    const Affine found = fit_axes(points, normals, surface, index, turned);
+    const Affine found = fit_axes(few, few_normals, surface, index, turned);
     if (found.agreement > best.agreement) best = found;
   }
   if (best.agreement < 0.2) throw NoResultError("A crown model does not come to lie on its template.");
@@ -186,12 +189,10 @@ Affine fit_from_several_turns(const std::vector<Point>& points, const std::vecto
 class SmoothField {
  public:
   SmoothField(const std::vector<Point>& centres, const std::vector<Point>& data, double length, double noise)
-      : centres_(centres), length_(length) {
-    const Eigen::MatrixXd cross = kernel(data);
-    trend_data_ = trend(data);
-    trend_solver_.compute(trend_data_);
-    system_.compute(cross.transpose() * cross + noise * kernel(centres));
-    cross_ = cross;
+      : cross_(kernel(centres, data, length)), trend_data_(trend(data)), trend_solver_(trend_data_) {
+    Eigen::MatrixXd system = noise * kernel(centres, centres, length);
+    system.selfadjointView<Eigen::Lower>().rankUpdate(cross_.transpose());
+    system_.compute(system);
   }
 
   /// Values: one row per datum, any number of columns. Result: coefficients, centres first, then the trend's four.
@@ -203,19 +204,20 @@ class SmoothField {
   }
 
   /// What to multiply the coefficients by to get the field at points.
-  Eigen::MatrixXd basis(const std::vector<Point>& points) const {
-    Eigen::MatrixXd result(static_cast<Eigen::Index>(points.size()), cross_.cols() + 4);
-    result.leftCols(cross_.cols()) = kernel(points);
+  static Eigen::MatrixXd basis(const std::vector<Point>& centres, const std::vector<Point>& points, double length) {
+    const auto count = static_cast<Eigen::Index>(centres.size());
+    Eigen::MatrixXd result(static_cast<Eigen::Index>(points.size()), count + 4);
+    result.leftCols(count) = kernel(centres, points, length);
     result.rightCols(4) = trend(points);
     return result;
   }
 
  private:
-  Eigen::MatrixXd kernel(const std::vector<Point>& points) const {
-    Eigen::MatrixXd k(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(centres_.size()));
-    for (std::size_t j = 0; j < centres_.size(); ++j) {
+  static Eigen::MatrixXd kernel(const std::vector<Point>& centres, const std::vector<Point>& points, double length) {
+    Eigen::MatrixXd k(static_cast<Eigen::Index>(points.size()), static_cast<Eigen::Index>(centres.size()));
+    for (std::size_t j = 0; j < centres.size(); ++j) {
       for (std::size_t i = 0; i < points.size(); ++i) {
-        const double r = std::sqrt(3.0) * (points[i] - centres_[j]).norm() / length_;
+        const double r = std::sqrt(3.0) * (points[i] - centres[j]).norm() / length;
         k(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = (1 + r) * std::exp(-r);
       }
     }
@@ -228,8 +230,6 @@ class SmoothField {
     return t;
   }
 
-  std::vector<Point> centres_;
-  double length_;
   Eigen::MatrixXd cross_, trend_data_;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> trend_solver_;
   Eigen::LDLT<Eigen::MatrixXd> system_;
@@ -242,30 +242,38 @@ std::vector<Point> spread_centres(const std::vector<Point>& points, std::size_t 
   return centres;
 }
 
-// Where the field is read for a vertex: on the crown in place, below the neck straight above, at the neck.
+// Where the field is read for a vertex: on the crown in place, below the neck straight above, at the neck. The root's
+// lower half stays where it is.
 struct Carrier {
+  std::size_t vertex_count = 0;
+  std::vector<std::size_t> vertex;
   std::vector<Point> points;
   std::vector<double> across, along;  ///< strength of the displacement across the axis and along it, 0..1
 };
 
 Carrier carrier_of(const FamilyTemplate& tooth, double neck) {
   Carrier carrier;
-  for (const Point& p : tooth.mesh.vertices) {
+  carrier.vertex_count = tooth.mesh.vertices.size();
+  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v) {
+    const Point& p = tooth.mesh.vertices[v];
     const double h = p.z() - tooth.junction(p.x(), p.y());
+    const double across = fade((neck - h) / 8.0);
+    if (across <= 0) continue;
+    carrier.vertex.push_back(v);
     carrier.points.emplace_back(p.x(), p.y(), p.z() + neck + soft_plus(h - neck, 0.5) - h);
-    carrier.across.push_back(fade((neck - h) / 8.0));
+    carrier.across.push_back(across);
     carrier.along.push_back(fade((neck - h) / 4.0));
   }
   return carrier;
 }
 
 Eigen::VectorXf as_displacement(const Eigen::MatrixXd& field, const Carrier& carrier) {
-  Eigen::VectorXf result(3 * field.rows());
-  for (Eigen::Index v = 0; v < field.rows(); ++v) {
-    const auto i = static_cast<std::size_t>(v);
-    result[3 * v] = static_cast<float>(field(v, 0) * carrier.across[i]);
-    result[3 * v + 1] = static_cast<float>(field(v, 1) * carrier.across[i]);
-    result[3 * v + 2] = static_cast<float>(field(v, 2) * carrier.along[i]);
+  Eigen::VectorXf result = Eigen::VectorXf::Zero(static_cast<Eigen::Index>(3 * carrier.vertex_count));
+  for (std::size_t i = 0; i < carrier.vertex.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i), at = static_cast<Eigen::Index>(3 * carrier.vertex[i]);
+    result[at] = static_cast<float>(field(row, 0) * carrier.across[i]);
+    result[at + 1] = static_cast<float>(field(row, 1) * carrier.across[i]);
+    result[at + 2] = static_cast<float>(field(row, 2) * carrier.along[i]);
   }
   return result;
 }
@@ -379,18 +387,18 @@ CrownModes carry_crown_model(const FamilyTemplate& tooth, const CrownShapeModel&
   }
 
   constexpr double length = 3.5, noise = 0.08;
-  const std::vector<Point> centres = spread_centres(surface.points, 180);
+  const std::vector<Point> centres = spread_centres(surface.points, 150);
   const Carrier carrier = carrier_of(tooth, neck_height(tooth, points));
+  const Eigen::MatrixXd basis = SmoothField::basis(centres, carrier.points, length);
   TriangleMesh moved = tooth.mesh;
   CrownModes carried;
-  constexpr int rounds = 6;
+  constexpr int rounds = 5;
   for (int round = 0;; ++round) {
     const Correspondence pairs = correspond(points, normals, surface, moved, round < 3 ? 2.0 : 1.2);
     if (pairs.place.size() < points.size() / 3)
       throw NoResultError("A crown model does not come to lie on its template.");
     carried.residual_mm = pairs.mean_distance;
     const SmoothField field(centres, pairs.place, length, noise);
-    const Eigen::MatrixXd basis = field.basis(carrier.points);
     if (round < rounds) {
       carried.mean_shift = as_displacement(basis * field.fit(pairs.displacement), carrier);
       for (std::size_t v = 0; v < moved.vertices.size(); ++v)
@@ -408,7 +416,7 @@ CrownModes carry_crown_model(const FamilyTemplate& tooth, const CrownShapeModel&
             (map.linear * model.modes[static_cast<std::size_t>(k)].row(row).transpose()).transpose();
     }
     const Eigen::MatrixXd fields = basis * field.fit(values);
-    carried.modes.resize(3 * fields.rows(), mode_count);
+    carried.modes.resize(carried.mean_shift.size(), mode_count);
     for (Eigen::Index k = 0; k < mode_count; ++k)
       carried.modes.col(k) = as_displacement(fields.middleCols<3>(3 * k), carrier);
     carried.deviations = model.deviations;

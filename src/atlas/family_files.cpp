@@ -103,12 +103,27 @@ TriangleMesh enamel(const FamilyTemplate& tooth) {
   return crown;
 }
 
+std::vector<Point> usual_crown(const ToothFamilies& families, const TemplateLoan& loan) {
+  std::vector<Point> vertices = families.templates[static_cast<std::size_t>(loan.from)].mesh.vertices;
+  constexpr double models_per_pair = 2;  // left and right
+  for (const FamilyCrownModel& model : families.crown_models) {
+    if (model.type != loan.type || model.from != loan.from) continue;
+    const double share = (model.usual_share - model.template_share) / models_per_pair;
+    for (std::size_t v = 0; v < vertices.size(); ++v)
+      vertices[v] += share * model.modes.mean_shift.segment<3>(static_cast<Eigen::Index>(3 * v)).cast<double>();
+  }
+  return vertices;
+}
+
 // Templates stand in the arch turned each in its own way: what a borrowed one has against the type's own.
 void measure_turns(ToothFamilies& families) {
   tbb::parallel_for(std::size_t{0}, families.loans.size(), [&](std::size_t i) {
     TemplateLoan& loan = families.loans[i];
     const FamilyTemplate& own = families.templates[static_cast<std::size_t>(loan.type)];
-    const TriangleMesh goal = enamel(own), borrowed = enamel(families.templates[static_cast<std::size_t>(loan.from)]);
+    const TriangleMesh goal = enamel(own);
+    TriangleMesh borrowed = enamel(families.templates[static_cast<std::size_t>(loan.from)]);
+    loan.crown = usual_crown(families, loan);
+    borrowed.vertices = loan.crown;
     CanonicalFrame upright;
     upright.centre = area_centroid(goal);
     const SurfaceSamples samples = sample_surface(goal, 512, 1);

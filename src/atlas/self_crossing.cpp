@@ -39,6 +39,10 @@ class Crossings {
     // As many cells as triangles cover thinly, and never more than fit into memory for a stray vertex.
     cell_ = std::max(1.2 * extent, all.sizes().maxCoeff() / 200 + 1e-9);
     size_ = ((all.sizes().array() / cell_).floor()).cast<int>() + 1;
+    for (const Box& box : boxes_) {
+      low_cells_.push_back(cell_of(box.low));
+      high_cells_.push_back(cell_of(box.high));
+    }
     fill();
   }
 
@@ -65,7 +69,7 @@ class Crossings {
 
   template <typename Visit>
   void visit_cells(std::size_t t, const Visit& visit) const {
-    const Cell low = cell_of(boxes_[t].low), high = cell_of(boxes_[t].high);
+    const Cell &low = low_cells_[t], &high = high_cells_[t];
     for (int z = low.z(); z <= high.z(); ++z)
       for (int y = low.y(); y <= high.y(); ++y)
         for (int x = low.x(); x <= high.x(); ++x) visit(number(Cell(x, y, z)));
@@ -83,9 +87,10 @@ class Crossings {
 
   bool meet(std::size_t cell, int first, int second) const {
     const auto a = static_cast<std::size_t>(first), b = static_cast<std::size_t>(second);
-    if ((boxes_[a].low > boxes_[b].high).any() || (boxes_[b].low > boxes_[a].high).any()) return false;
+    for (int k = 0; k < 3; ++k)
+      if (boxes_[a].low[k] > boxes_[b].high[k] || boxes_[b].low[k] > boxes_[a].high[k]) return false;
     // Each pair is looked at in one of the cells that both lie in.
-    if (number(cell_of(boxes_[a].low.max(boxes_[b].low))) != cell) return false;
+    if (number(low_cells_[a].max(low_cells_[b])) != cell) return false;
     const Triangle &ta = mesh_.triangles[a], &tb = mesh_.triangles[b];
     int shared = 0;
     std::size_t at_a = 0, at_b = 0;
@@ -118,6 +123,7 @@ class Crossings {
 
   const TriangleMesh& mesh_;
   std::vector<Box> boxes_;
+  std::vector<Cell> low_cells_, high_cells_;
   std::vector<Eigen::Vector3d> normals_;
   Eigen::Array3d origin_;
   double cell_ = 1;

@@ -21,14 +21,15 @@ namespace rhizodont {
 namespace {
 
 // The type's own template or a borrowed one.
-TemplateLoan choose_template(int type, RandomStream& random, const ToothFamilies& families) {
+const TemplateLoan& choose_template(int type, RandomStream& random, const ToothFamilies& families,
+                                    const TemplateLoan& own) {
   double draw = random.uniform();
   for (const TemplateLoan& loan : families.loans) {
     if (loan.type != type) continue;
     if (draw < loan.share) return loan;
     draw -= loan.share;
   }
-  return {type, type, 1, 0};
+  return own;
 }
 
 bool is_sound(const FamilyTemplate& source, const SyntheticTooth& tooth) {
@@ -115,8 +116,9 @@ void measure_roots(SyntheticTooth& tooth, std::size_t roots) {
   tooth.root_length = -box.min().z();
 }
 
-SyntheticTooth draw_tooth(const ToothFamilies& families, int type, int from, const ToothVariation& variation,
-                          RandomStream& random) {
+SyntheticTooth draw_tooth(const ToothFamilies& families, int type, const TemplateLoan& loan,
+                          const ToothVariation& variation, RandomStream& random) {
+  const int from = loan.from;
   const FamilyTemplate& source = families.templates[static_cast<std::size_t>(from)];
   const ToothDimensions& mean = families.dimensions[static_cast<std::size_t>(type)];
   const ToothShape shape = draw_shape(source, mean, type, variation, random);
@@ -136,7 +138,8 @@ SyntheticTooth draw_tooth(const ToothFamilies& families, int type, int from, con
     p = shaped(source, shape, p, source.root[v]);
     if (warp > 0) p += whole(p) + 0.5 * fine(p);
   }
-  tooth.crown_turn = crown_turn(source.mesh.vertices, tooth.mesh.vertices, tooth.crown);
+  tooth.crown_turn =
+      loan.turn + crown_turn(loan.crown.empty() ? source.mesh.vertices : loan.crown, tooth.mesh.vertices, tooth.crown);
   mark_crown(tooth, variation, random);
   tooth.junction = shaped_junction(source.junction, shape);
   measure_roots(tooth, source.roots.size());
@@ -166,11 +169,11 @@ SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint
                               const ToothVariation& variation) {
   require_type(families, type);
   RandomStream random(seed, static_cast<std::uint64_t>(type) + 1);
+  const TemplateLoan own{type, type, 1, 0, {}};
   for (int draw = 0; draw < 20; ++draw) {
-    const TemplateLoan loan = choose_template(type, random, families);
+    const TemplateLoan& loan = choose_template(type, random, families, own);
     const FamilyTemplate& source = families.templates[static_cast<std::size_t>(loan.from)];
-    SyntheticTooth tooth = draw_tooth(families, type, loan.from, variation, random);
-    tooth.crown_turn += loan.turn;
+    SyntheticTooth tooth = draw_tooth(families, type, loan, variation, random);
     if (is_sound(source, tooth)) return tooth;
   }
   throw NoResultError("No sound tooth of type " + std::to_string(type) + " came out of 20 draws.");
@@ -179,7 +182,7 @@ SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint
 SyntheticTooth mean_tooth(const ToothFamilies& families, int type) {
   require_type(families, type);
   RandomStream unused(0);
-  return draw_tooth(families, type, type, no_variation(), unused);
+  return draw_tooth(families, type, {type, type, 1, 0, {}}, no_variation(), unused);
 }
 
 }  // namespace rhizodont

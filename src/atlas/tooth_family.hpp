@@ -57,7 +57,9 @@ struct ToothDimensions {
 struct TemplateLoan {
   int type = 0, from = 0;  ///< types 0..15: grown as, template of
   double share = 0;        ///< of that type's teeth, 0..1
-  double turn = 0;         ///< rotation about z (radians) that the borrowed template has against the type's own
+  double turn = 0;         ///< rotation about z (radians) that `crown` has against the type's own
+  /// The borrowed template's vertices with its crown in the form of the type's mean, as far as there are models of it.
+  std::vector<Point> crown = {};
 };
 
 /// A statistical crown model on the template that a type is grown from.

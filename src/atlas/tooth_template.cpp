@@ -7,9 +7,9 @@
 // furcation. Simplification: P. Lindstrom, G. Turk, "Fast and memory efficient polygonal simplification", 1998 (CGAL).
 #include "atlas/tooth_template.hpp"
 
-#include "atlas/self_crossing.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
+#include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
 
 #include <CGAL/Simple_cartesian.h>
@@ -22,6 +22,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <set>
 
 namespace rhizodont {
 namespace {
@@ -124,6 +125,28 @@ std::vector<std::vector<int>> vertex_neighbours(const TriangleMesh& mesh) {
   for (const Triangle& t : mesh.triangles)
     for (std::size_t i = 0; i < 3; ++i) neighbours[static_cast<std::size_t>(t[i])].push_back(t[(i + 1) % 3]);
   return neighbours;
+}
+
+// Simplification may fold deep fissures: vertices of crossing triangles move towards their neighbours' mean.
+void relax_crossings(TriangleMesh& mesh) {
+  std::vector<std::vector<int>> neighbours;
+  for (int round = 0; round < 30; ++round) {
+    const auto pairs = self_intersecting_triangles(mesh);
+    if (pairs.empty()) return;
+    if (neighbours.empty()) neighbours = vertex_neighbours(mesh);
+    std::set<int> moved;
+    for (const auto& [a, b] : pairs)
+      for (int t : {a, b})
+        for (int v : mesh.triangles[static_cast<std::size_t>(t)]) moved.insert(v);
+    const std::vector<Point> before = mesh.vertices;
+    for (int v : moved) {
+      const auto& around = neighbours[static_cast<std::size_t>(v)];
+      Point mean = Point::Zero();
+      for (int w : around) mean += before[static_cast<std::size_t>(w)] / static_cast<double>(around.size());
+      Point& p = mesh.vertices[static_cast<std::size_t>(v)];
+      p = 0.5 * (p + mean);
+    }
+  }
 }
 
 // Sweeps from the apices up; a vertex gets the label of the part it belonged to before that met another lasting one.
@@ -280,10 +303,8 @@ FamilyTemplate analyse_template(const TriangleMesh& mesh, const std::vector<std:
   Point origin = Point::Zero();
   for (const Point& p : border) origin += p / static_cast<double>(border.size());
 
-  // Simplification may fold a groove; a few vertices more and it goes another way.
   tooth.mesh = simplified(mesh, vertices);
-  for (std::size_t more = 1; more <= 8 && crosses_itself(tooth.mesh); ++more)
-    tooth.mesh = simplified(mesh, vertices + more * vertices / 50);
+  relax_crossings(tooth.mesh);
   const NearestVertexIndex full(mesh.vertices);
   for (Point& p : tooth.mesh.vertices) {
     tooth.crown.push_back(crown[static_cast<std::size_t>(full.nearest(p).index)]);

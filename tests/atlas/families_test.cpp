@@ -20,18 +20,21 @@
 #include <cmath>
 #include <filesystem>
 #include <numeric>
+#include <set>
 
 namespace rhizodont {
 namespace {
 
 const std::filesystem::path data = std::filesystem::path(RHIZODONT_SOURCE_DIR) / ".." / "shared" / "data";
 
-// Templates are read and simplified for each test, so tests say which types they need.
-ToothFamilies families_of(std::vector<int> types) {
-  FamilyLoadOptions options;
-  options.vertices = 3000;
-  options.types = std::move(types);
-  return load_tooth_families(data, options);
+// Reading takes seconds: one set for all tests.
+const ToothFamilies& all_families() {
+  static const ToothFamilies families = [] {
+    FamilyLoadOptions options;
+    options.vertices = 3000;
+    return load_tooth_families(data, options);
+  }();
+  return families;
 }
 
 class Families : public ::testing::Test {
@@ -67,7 +70,7 @@ void expect_roots_of_type(const ToothFamilies& families) {
 }
 
 TEST_F(Families, sameSeedSameToothOnAnyThread) {
-  const ToothFamilies families = families_of({0, 3, 4, 13});
+  const ToothFamilies& families = all_families();
   constexpr std::array<int, 8> types{0, 3, 4, 13, 0, 3, 4, 13};
   std::array<SyntheticTooth, 8> first, again;
   tbb::parallel_for(0, 8, [&](int i) {
@@ -104,7 +107,7 @@ void expect_no_self_intersections(const ToothFamilies& families) {
 }
 
 TEST_F(Families, dimensionsSpreadAroundThePopulationsMeans) {
-  const ToothFamilies families = families_of({0, 5, 11, 13});
+  const ToothFamilies& families = all_families();
   for (const int type : {0, 5, 11, 13}) {
     const ToothDimensions& mean = families.dimensions[static_cast<std::size_t>(type)];
     constexpr int count = 100;
@@ -135,7 +138,7 @@ TEST_F(Families, dimensionsSpreadAroundThePopulationsMeans) {
 }
 
 TEST_F(Families, whatIsKnownAboutAToothHolds) {
-  const ToothFamilies families = families_of({2, 6, 14});
+  const ToothFamilies& families = all_families();
   for (const int type : {2, 6, 14}) {
     const SyntheticTooth tooth = generate_tooth(families, type, 9);
     const Eigen::AlignedBox3d box = bounding_box(tooth.mesh.vertices);
@@ -156,8 +159,108 @@ TEST_F(Families, whatIsKnownAboutAToothHolds) {
   }
 }
 
+TEST_F(Families, aTypeThatWasNotLoadedIsRefused) {
+  FamilyLoadOptions options;
+  options.vertices = 800;
+  options.types = {8};
+  options.crown_modes = 0;
+  const ToothFamilies families = load_tooth_families(data, options);
+  EXPECT_TRUE(families.crown_models.empty());
+  EXPECT_NO_THROW(generate_tooth(families, 8, 1));
+  EXPECT_THROW(generate_tooth(families, 12, 1), UsageError);
+}
+
+void expect_models_on_templates(const ToothFamilies& families) {
+  for (const FamilyCrownModel& model : families.crown_models) {
+    const FamilyTemplate& tooth = families.templates[static_cast<std::size_t>(model.from)];
+    const auto rows = static_cast<Eigen::Index>(3 * tooth.mesh.vertices.size());
+    ASSERT_EQ(model.modes.mean_shift.size(), rows);
+    ASSERT_EQ(model.modes.modes.rows(), rows);
+    ASSERT_EQ(model.modes.modes.cols(), static_cast<Eigen::Index>(model.modes.deviations.size()));
+    EXPECT_LT(model.modes.residual_mm, 0.06) << model.type << " from " << model.from;
+    // The crowns of people differ by some tenths of a millimetre; the lower half of the root stays where it is.
+    double crown = 0, crown_count = 0;
+    for (std::size_t v = 0; v < tooth.crown.size(); ++v) {
+      const Point& p = tooth.mesh.vertices[v];
+      double square = 0;
+      for (std::size_t k = 0; k < model.modes.deviations.size(); ++k)
+        square += std::pow(model.modes.deviations[k], 2) *
+                  static_cast<double>(model.modes.modes.col(static_cast<Eigen::Index>(k))
+                                          .segment<3>(static_cast<Eigen::Index>(3 * v))
+                                          .squaredNorm());
+      if (p.z() < tooth.junction(p.x(), p.y()) - 9) {
+        EXPECT_EQ(square, 0);
+      } else if (tooth.crown[v] == 1) {
+        crown += std::sqrt(square), crown_count += 1;
+      }
+    }
+    EXPECT_GT(crown / crown_count, 0.2) << model.type << " from " << model.from;
+    EXPECT_LT(crown / crown_count, 0.9) << model.type << " from " << model.from;
+  }
+}
+
+// Pieces of the surface under a height that reach more than 1 mm further down.
+int roots_below(const SyntheticTooth& tooth, double height) {
+  std::vector<int> parent(tooth.mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto find = [&](int v) {
+    while (parent[static_cast<std::size_t>(v)] != v) v = parent[static_cast<std::size_t>(v)];
+    return v;
+  };
+  const auto z = [&](int v) { return tooth.mesh.vertices[static_cast<std::size_t>(v)].z(); };
+  for (const Triangle& t : tooth.mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int a = t[i], b = t[(i + 1) % 3];
+      if (z(a) < height && z(b) < height) parent[static_cast<std::size_t>(find(a))] = find(b);
+    }
+  std::set<int> deep;
+  for (std::size_t v = 0; v < parent.size(); ++v)
+    if (tooth.mesh.vertices[v].z() < height - 1) deep.insert(find(static_cast<int>(v)));
+  return static_cast<int>(deep.size());
+}
+
+TEST_F(Families, furcationsPartTheRoots) {
+  const ToothFamilies& families = all_families();
+  for (const int type : {5, 6, 13, 14, 15}) {
+    for (std::uint64_t seed = 60; seed < 66; ++seed) {
+      const SyntheticTooth tooth = generate_tooth(families, type, seed);
+      EXPECT_EQ(roots_below(tooth, tooth.furcation_z + 1.5), 1) << "type " << type << " seed " << seed;
+      EXPECT_GE(roots_below(tooth, tooth.furcation_z - 0.7), 2) << "type " << type << " seed " << seed;
+    }
+  }
+}
+
+TEST_F(Families, matchedPlacesAreTheSameOnAllTeethOfAType) {
+  const ToothFamilies& families = all_families();
+  CompletionSampleOptions options;
+  options.type = 13;
+  std::size_t places = 0, with = 0;
+  for (std::uint64_t seed = 0; seed < 12; ++seed) {
+    const CompletionSample sample = make_completion_sample(families, seed, options);
+    if (sample.matched.empty()) continue;
+    ++with;
+    if (places == 0) places = sample.matched.size() / 3;
+    ASSERT_EQ(sample.matched.size(), 3 * places);
+    ASSERT_EQ(sample.matched_normals.size(), 3 * places);
+    ASSERT_EQ(sample.matched_root.size(), places);
+    // The tips in the list of apices are among them.
+    for (const Point& apex : sample.apices) {
+      double nearest = 1;
+      for (std::size_t i = 0; i < places; ++i) {
+        const Eigen::Vector3f p(sample.matched[3 * i], sample.matched[3 * i + 1], sample.matched[3 * i + 2]);
+        nearest = std::min(nearest, (p.cast<double>() - apex).norm());
+      }
+      EXPECT_LT(nearest, 1e-6);
+    }
+    for (const Eigen::Vector3d& axis : sample.root_axes) EXPECT_NEAR(axis.norm(), 1, 1e-9);
+    EXPECT_GT(sample.growth_axis.z(), 0.8);
+    EXPECT_LT(sample.furcation_z, 0);
+  }
+  EXPECT_GE(with, 8U);
+}
+
 TEST_F(Families, noVariationGivesTheMeanTooth) {
-  const ToothFamilies families = families_of({8});
+  const ToothFamilies& families = all_families();
   const SyntheticTooth tooth = mean_tooth(families, 8);
   EXPECT_NEAR(tooth.crown_turn, 0, 0.02);
   EXPECT_EQ(tooth.mesh.vertices, mean_tooth(families, 8).mesh.vertices);
@@ -179,7 +282,7 @@ void expect_crops_are_discs(const ToothFamilies& families) {
 }
 
 TEST_F(Families, samplesAreInCanonicalPose) {
-  const ToothFamilies families = families_of({3, 8, 13});
+  const ToothFamilies& families = all_families();
   for (std::uint64_t seed = 0; seed < 24; ++seed) {
     CompletionSampleOptions options;
     options.type = std::array{3, 8, 13}[seed % 3];
@@ -212,7 +315,7 @@ TEST_F(Families, samplesAreInCanonicalPose) {
 }
 
 TEST_F(Families, samplesRepeatAndDiffer) {
-  const ToothFamilies families = families_of({13});
+  const ToothFamilies& families = all_families();
   CompletionSampleOptions options;
   options.type = 13;
   const CompletionSample a = make_completion_sample(families, 123, options);
@@ -221,7 +324,8 @@ TEST_F(Families, samplesRepeatAndDiffer) {
   EXPECT_EQ(a.target, b.target);
   EXPECT_EQ(a.type, b.type);
   EXPECT_NE(a.target, make_completion_sample(families, 124, options).target);
-  EXPECT_THROW(generate_tooth(families, 12, 1), UsageError);
+  EXPECT_THROW(generate_tooth(families, 16, 1), UsageError);
+  EXPECT_THROW(generate_tooth(families, -1, 1), UsageError);
   options.type = 16;
   EXPECT_THROW(make_completion_sample(families, 1, options), UsageError);
   options.type = 13;
@@ -248,7 +352,7 @@ void expect_registration(const ToothFamilies& families) {
       const Eigen::Vector3d a = found.frame.direction_to_canonical(turn * Eigen::Vector3d::UnitX());
       const Eigen::Vector3d b = truth.direction_to_canonical(Eigen::Vector3d::UnitX());
       const double error = std::atan2(b.x() * a.y() - b.y() * a.x(), b.x() * a.x() + b.y() * a.y());
-      if (std::abs(error) < 0.1) ++good[static_cast<std::size_t>(type)];
+      if (std::abs(error) < 0.15) ++good[static_cast<std::size_t>(type)];  // worn and chipped crowns among them
     }
   });
   int all = 0;
@@ -260,8 +364,9 @@ void expect_registration(const ToothFamilies& families) {
 }
 
 TEST_F(Families, everyTypeIsSound) {
-  const ToothFamilies families = families_of({});
+  const ToothFamilies& families = all_families();
   expect_roots_of_type(families);
+  expect_models_on_templates(families);
   expect_solids(families);
   expect_no_self_intersections(families);
   expect_crops_are_discs(families);
