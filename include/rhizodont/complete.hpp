@@ -91,6 +91,7 @@ struct CompletionRecord {
   CheckReport promises;                      ///< evidence for promises 1 and 2, figures for promise 3
   std::map<std::string, std::string> model;  ///< what the network's weights say of themselves: date, samples, seed
   std::vector<StageRecord> stages;
+  std::vector<StageRecord> joining_steps;  ///< the parts of the stage "joining"; peak memory is not taken
   std::vector<std::string> warnings;
 };
 

@@ -5,26 +5,32 @@
 #include "fusion/crown_border.hpp"
 #include "rhizodont/mesh.hpp"
 
+#include <Eigen/Geometry>
+
 #include <vector>
 
 namespace rhizodont {
 
 /// How long edges of the root are to be at a place: as long as the crown's border edges beside the border, from there
 /// growing or shrinking with the distance to the length that the root has.
-struct EdgeLengths {
-  struct Source {
-    Point middle = Point::Zero();
-    double length = 0;  ///< mm
-  };
-  double root = 0.27;           ///< mm, > 0: away from the border
-  double growth = 0.5;          ///< > 0: per distance from a short border edge; steep, since they are short by accident
-  double shrinkage = 0.15;      ///< > 0: per distance from a long border edge
-  std::vector<Source> sources;  ///< the border's edges
+class EdgeLengths {
+ public:
+  /// `root`: mm, > 0, the length away from the border; `growth` and `shrinkage`, both > 0: change of length per
+  /// distance from a border edge that is shorter or longer. Precondition: `border` is that of `crown`.
+  EdgeLengths(const TriangleMesh& crown, const CrownBorder& border, double root, double growth, double shrinkage);
 
   double at(const Point& p) const;
-};
+  double root() const { return root_; }
 
-/// Precondition: `border` is that of `crown`.
-EdgeLengths edge_lengths(const TriangleMesh& crown, const CrownBorder& border, double root_edge);
+ private:
+  struct Source {
+    Point middle = Point::Zero();
+    double length = 0;  // mm
+  };
+  double root_, growth_, shrinkage_;
+  double reach_ = 0;  // mm from the border's box: farther off the root's length holds
+  Eigen::AlignedBox3d box_;
+  std::vector<Source> sources_;
+};
 
 }  // namespace rhizodont

@@ -52,11 +52,8 @@ struct Ground {
         border(find_crown_border(crown)),
         distances(crown_distances(surface, crown, border)),
         walk(surface),
-        lengths(edge_lengths(crown, border, mean_edge_length(surface))),
-        gap(border_gap(crown, border, walk)) {
-    lengths.growth = options.edge_growth;
-    lengths.shrinkage = options.edge_shrinkage;
-  }
+        lengths(crown, border, mean_edge_length(surface), options.edge_growth, options.edge_shrinkage),
+        gap(border_gap(crown, border, walk)) {}
 };
 
 /// Positions of the vertices of new triangles that cut others.
@@ -89,7 +86,7 @@ void improve_triangles(const Ground& ground, const FuseOptions& options, FusedTo
   std::vector<Point> frozen;
   for (int i = 1; i <= options.remesh_attempts; ++i) {
     RestoredTooth remeshed = fused.tooth;
-    const double radius = i * ground.lengths.root;
+    const double radius = i * ground.lengths.root();
     const RootRemeshing done = remesh_root(remeshed, ground.walk, ground.lengths, frozen, radius, options.remesh);
     const auto cuts = self_intersecting_triangles(remeshed.mesh);
     if (cuts.empty()) {

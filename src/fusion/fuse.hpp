@@ -15,7 +15,7 @@
 namespace rhizodont {
 
 struct FuseOptions {
-  double edge_growth = 0.5;      ///< > 0: how fast edges grow with the distance from a short border edge
+  double edge_growth = 1.2;      ///< > 0: how fast edges grow with the distance from a short border edge
   double edge_shrinkage = 0.15;  ///< > 0: how fast they shrink from a long one
   SeparationOptions separation;
   RootSitesOptions sites;

@@ -125,7 +125,8 @@ class Mender {
     return true;
   }
 
-  /// Splits the longest interior edge if that makes the smallest angle larger once edges around are turned.
+  /// Splits the longest edge where the two new vertices beside it would see better angles, and always where it joins
+  /// two border vertices: without a vertex of its own such a triangle has the border's angles.
   bool improve_by_split(int h) {
     int longest = -1;
     double length = 0;
@@ -135,9 +136,17 @@ class Mender {
       longest = k;
       length = l;
     }
-    if (mesh().opposite(longest) < 0 || !patch_.can_split(longest)) return false;
-    const bool between_fixed = mesh().is_fixed(mesh().from(longest)) && mesh().is_fixed(mesh().to(longest));
-    if (!between_fixed && patch_.relative_length(longest) < 1.2) return false;
+    if (longest < 0 || !patch_.can_split(longest)) return false;
+    const int a = mesh().from(longest), b = mesh().to(longest);
+    if (!(mesh().is_fixed(a) && mesh().is_fixed(b))) {
+      const int g = mesh().opposite(longest);
+      const Point middle = 0.5 * (patch_.point(a) + patch_.point(b));
+      double after = 4;
+      for (const int apex : {mesh().apex(longest), mesh().apex(g)})
+        for (const int end : {a, b})
+          after = std::min(after, smallest_angle(middle, patch_.point(end), patch_.point(apex)));
+      if (after < std::min(patch_.smallest_angle_at(longest), patch_.smallest_angle_at(g)) + worthwhile) return false;
+    }
     patch_.split(longest);
     return true;
   }

@@ -118,6 +118,18 @@ void relax(FittedPatch& patch) {
   }
 }
 
+/// No angle is smaller than wanted in the interior or along the border.
+bool smallest_angles_suffice(const FittedPatch& patch, const RemeshRootOptions& options) {
+  const PatchMesh& mesh = patch.mesh();
+  for (int h = 0; h < mesh.half_edges(); h += 3) {
+    if (!mesh.is_alive(h)) continue;
+    const bool at_border = mesh.is_fixed(mesh.from(h)) || mesh.is_fixed(mesh.to(h)) || mesh.is_fixed(mesh.apex(h));
+    const double bound = at_border ? options.border_angle : options.inner_angle;
+    if (patch.smallest_angle_at(h) < bound * std::numbers::pi / 180) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 RootRemeshing remesh_root(RestoredTooth& tooth, const SurfaceWalk& guiding_surface, const EdgeLengths& lengths,
@@ -137,7 +149,17 @@ RootRemeshing remesh_root(RestoredTooth& tooth, const SurfaceWalk& guiding_surfa
     patch.renew_sizes();
   }
   done.flips += flip_to_delaunay(patch);
-  done.mended = mend_angles(patch, options.least_angle * std::numbers::pi / 180, options.mending_rounds);
+  constexpr double radians = std::numbers::pi / 180;
+  for (int i = 0; i < options.mending_passes; ++i) {
+    done.mended += mend_angles(patch, options.least_angle * radians, options.mending_rounds);
+    if (smallest_angles_suffice(patch, options)) break;
+    // What no single operation mends may be mended from a slightly different start.
+    if (i + 1 < options.mending_passes) {
+      relax(patch);
+      patch.renew_sizes();
+      done.flips += flip_to_delaunay(patch);
+    }
+  }
   tooth.mesh = patch.tooth(tooth);
   return done;
 }

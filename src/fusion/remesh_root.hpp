@@ -16,7 +16,11 @@ struct RemeshRootOptions {
   double shortest = 0.5;    ///< (0, 1): shorter ones are collapsed
   double fading = 0.75;     ///< mm, > 0: over which the offset between the crown's border and the guiding surface fades
   double least_angle = 28;  ///< degrees, [0, 30]: triangles with a smaller one are mended
-  int mending_rounds = 8;   ///< >= 0
+  int mending_rounds = 12;  ///< >= 0
+  double inner_angle =
+      21;  ///< degrees: mending starts anew from relaxed vertices if an angle is left smaller than this,
+  double border_angle = 6;  ///< or than this in a triangle that touches the crown,
+  int mending_passes = 3;   ///< at most so often, >= 0
 };
 
 /// What was done to the root's triangles.

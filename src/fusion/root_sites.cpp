@@ -42,7 +42,7 @@ class Front {
         is_root_(is_root),
         lengths_(lengths),
         options_(options),
-        grid_(bounding_box(walk.surface().vertices).merged(bounding_box(crown.vertices)), lengths.root),
+        grid_(bounding_box(walk.surface().vertices).merged(bounding_box(crown.vertices)), lengths.root()),
         depth_(crown.vertices.size(), 0) {
     for (const Point& p : crown.vertices) grid_.add(p);
   }

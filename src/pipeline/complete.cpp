@@ -121,6 +121,9 @@ void note_fusion(const FusedTooth& fused, CompletionRecord& record) {
   record.remeshing_operations = done.splits + done.collapses + done.flips + done.mended;
   record.sharpest_notch = fused.sharpest_notch;
   record.transition_vertices = static_cast<int>(fused.transition.vertices.size());
+  const FuseSeconds& s = fused.seconds;
+  record.joining_steps = {{"separation", s.separation}, {"root sites", s.sites},    {"diagram and dual", s.joining},
+                          {"restoring", s.restoring},   {"remeshing", s.remeshing}, {"transition", s.transition}};
   record.transition_width_mm = fused.transition.width;
   record.transition_largest_move_mm = fused.transition.largest_move;
   record.warnings.insert(record.warnings.end(), fused.warnings.begin(), fused.warnings.end());

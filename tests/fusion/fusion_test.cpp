@@ -78,6 +78,47 @@ TEST(Fusion, RaggedBorder) {
   expect_promises(crown, complete(crown, turned(test::sphere(5, 5)), Eigen::Vector3d::UnitZ()));
 }
 
+TEST(Fusion, SeveralHolesAndCocircularVertices) {
+  // Rings of a ball by latitude and longitude: every four neighbouring vertices lie on one circle, all on one sphere.
+  TriangleMesh crown;
+  constexpr int around = 60, rings = 18;
+  for (int r = 0; r < rings; ++r)
+    for (int i = 0; i < around; ++i) {
+      const double polar = (r + 2) * M_PI / 40, turn = 2 * M_PI * i / around;
+      crown.vertices.emplace_back(5 * std::sin(polar) * std::cos(turn), 5 * std::sin(polar) * std::sin(turn),
+                                  5 * std::cos(polar));
+    }
+  for (int r = 0; r + 1 < rings; ++r)
+    for (int i = 0; i < around; ++i) {
+      if (r > 8 && r < 12 && (i % 30) < 4) continue;  // two holes; a third around the pole
+      const int a = r * around + i, b = r * around + (i + 1) % around;
+      crown.triangles.push_back({a, a + around, b});
+      crown.triangles.push_back({b, a + around, b + around});
+    }
+  crown = compact(crown).mesh;
+  ASSERT_EQ(border_loops(crown).size(), 4U);
+  expect_promises(crown, complete(crown, turned(test::sphere(5, 5)), Eigen::Vector3d::UnitZ()));
+}
+
+TEST(Fusion, NeedleTriangles) {
+  // Vertices put on edges, beside their ends, make triangles with angles of about 0.1 degrees.
+  TriangleMesh crown = part(test::sphere(4, 5), [](const Point& p) { return p.z() > 0.3; });
+  const std::size_t before = crown.triangles.size();
+  for (std::size_t t = 0; t < before; t += 40) {
+    const auto [a, b, c] = crown.triangles[t];
+    const Point middle = (crown.vertices[static_cast<std::size_t>(a)] + crown.vertices[static_cast<std::size_t>(b)] +
+                          crown.vertices[static_cast<std::size_t>(c)]) /
+                         3;
+    const int m = static_cast<int>(crown.vertices.size());
+    crown.vertices.push_back(crown.vertices[static_cast<std::size_t>(a)] +
+                             0.002 * (middle - crown.vertices[static_cast<std::size_t>(a)]));
+    crown.triangles[t] = {a, b, m};
+    crown.triangles.push_back({b, c, m});
+    crown.triangles.push_back({c, a, m});
+  }
+  expect_promises(crown, complete(crown, turned(test::sphere(5, 5)), Eigen::Vector3d::UnitZ()));
+}
+
 TEST(Fusion, ClosedCrownIsRefused) {
   const TriangleMesh ball = test::sphere(3, 5);
   EXPECT_THROW(fuse_crown_and_root(ball, ball, Eigen::Vector3d::UnitZ()), InputError);
