@@ -1,18 +1,31 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Orientation, indicator function and guiding surface on the validation teeth, as Markdown tables.
-// usage: bench_poisson DATA stages
+// Orientation, indicator function and guiding surface on real teeth, as Markdown tables.
+// usage: bench_poisson DATA stages|peers|distance|orientation|ipsr|growth
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <exception>
+#include <random>
 #include <string>
 
+#include "common/bench_teeth.hpp"
+#include "common/stopwatch.hpp"
 #include "isosurface/guiding_surface.hpp"
+#include "isosurface/iterative_poisson.hpp"
 #include "mesh/closest_point.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/quality.hpp"
+#include "mesh/sampling.hpp"
+#include "mesh/self_intersection.hpp"
+#include "pipeline/crown_fit.hpp"
 #include "pipeline/guiding_cloud.hpp"
 #include "poisson/clouds.hpp"
+#include "poisson/orientation.hpp"
+#include "poisson/peers.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
 
 namespace rhizodont {
 namespace {
@@ -21,22 +34,38 @@ struct Distances {
   double mean = 0, most = 0;
 };
 
-Distances distances(const TriangleMesh& crown, const TriangleMesh& surface) {
+Distances distances(const std::vector<Point>& points, const TriangleMesh& surface) {
   const ClosestPointIndex index(surface);
   Distances result;
-  for (const Point& p : crown.vertices) {
+  for (const Point& p : points) {
     const double d = index.closest(p).distance;
-    result.mean += d / static_cast<double>(crown.vertices.size());
+    result.mean += d / static_cast<double>(points.size());
     result.most = std::max(result.most, d);
   }
   return result;
 }
 
+OrientedPoints samples_of(const TriangleMesh& mesh, std::size_t count) {
+  const SurfaceSamples samples = sample_surface(mesh, count, 1);
+  return {samples.points, samples.normals};
+}
+
+TriangleMesh surface_of(const GuidingCloud& cloud, const TriangleMesh& crown, double e) {
+  GuidingSurfaceOptions options;
+  options.isosurface.e = e;
+  const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));
+  TriangleMesh surface = guiding_surface(cloud.samples, cloud.confidence, seeds, options).surface.mesh;
+  CrownFitOptions fit;
+  fit.tolerance = 0.015 * e;
+  fit_to_crown(surface, crown, fit);
+  return surface;
+}
+
+/// Seconds of each part for each validation tooth at e = 0.5.
 void stages(const std::filesystem::path& data) {
-  fmt::print(
-      "| tooth | samples | area mm2 | cloud s | indicator s | cycles | isosurface s | vertices | mean mm | max mm |\n");
-  fmt::print("|---|---|---|---|---|---|---|---|---|---|\n");
-  for (const PredictedTooth& tooth : predict_validation_teeth(data)) {
+  fmt::print("| tooth | samples | functions | cloud s | indicator s | cycles | isosurface s | fit s | sum s |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|\n");
+  for (const BenchPrediction& tooth : predict_validation_teeth(data)) {
     GuidingCloud cloud;
     const double t_cloud = best_seconds([&] { cloud = assemble_guiding_cloud(tooth.crown, tooth.predicted); });
     IndicatorStatistics statistics;
@@ -45,26 +74,220 @@ void stages(const std::filesystem::path& data) {
     const IndicatorFunction chi = solve_indicator(cloud.samples, cloud.confidence);
     IsosurfaceOptions options;
     options.as_ball = true;
-    Isosurface surface;
+    TriangleMesh surface;
+    const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));
     const double t_surface = best_seconds([&] {
-      surface =
-          grad_normal([&](const Point& p) { return chi.evaluate(p); }, chi.iso_value(), cloud.samples.points, options);
+      surface = grad_normal([&](const Point& p) { return chi.evaluate(p); }, chi.iso_value(), seeds, options).mesh;
     });
-    const Distances d = distances(tooth.crown, surface.mesh);
-    fmt::print("| {} | {} | {:.0f} | {:.3f} | {:.3f} | {} | {:.3f} | {} | {:.4f} | {:.3f} |\n", tooth.fdi,
-               cloud.samples.points.size(), statistics.sampled_area, t_cloud, t_indicator, statistics.cycles, t_surface,
-               surface.mesh.vertices.size(), d.mean, d.most);
+    const double t_fit = best_seconds([&] {
+      TriangleMesh fitted = surface;
+      fit_to_crown(fitted, tooth.crown);
+    });
+    fmt::print("| {} | {} | {} | {:.3f} | {:.3f} | {} | {:.3f} | {:.3f} | {:.3f} |\n", tooth.fdi,
+               cloud.samples.points.size(), statistics.functions, t_cloud, t_indicator, statistics.cycles, t_surface,
+               t_fit, t_cloud + t_indicator + t_surface + t_fit);
     std::fflush(stdout);
   }
+}
+
+/// The same 20,000 oriented points of whole validation teeth, the same depth.
+void peers(const std::filesystem::path& data) {
+  const auto scratch = std::filesystem::temp_directory_path();
+  fmt::print("| tooth | depth | method | s | triangles | mean mm | max mm | Open3D's time over ours |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|\n");
+  for (const BenchTooth& tooth : load_validation_teeth(data)) {
+    if (tooth.fdi != 31 && tooth.fdi != 33 && tooth.fdi != 36) continue;
+    const OrientedPoints samples = samples_of(tooth.tooth, 20000);
+    const auto row = [&](int depth, const std::string& method, double seconds, const TriangleMesh& mesh, double ratio) {
+      const Distances d = distances(samples.points, mesh);
+      fmt::print("| {} | {} | {} | {:.3f} | {} | {:.4f} | {:.3f} | {} |\n", tooth.fdi, depth, method, seconds,
+                 mesh.triangles.size(), d.mean, d.most, ratio > 0 ? fmt::format("{:.1f}", ratio) : "");
+      std::fflush(stdout);
+    };
+    const double cube = 1.1 * bounding_box(tooth.tooth.vertices).sizes().maxCoeff();
+    for (const int depth : {7, 8}) {
+      const PeerResult open3d = open3d_poisson(samples, depth, scratch);
+      row(depth, "Open3D", open3d.seconds, open3d.mesh, 0);
+      for (const int degree : {1, 2}) {
+        IndicatorOptions indicator;
+        indicator.degree = degree;
+        indicator.spacing = cube / (1 << depth);
+        IsosurfaceOptions isosurface;
+        isosurface.e = 2 * indicator.spacing;  // edges as long as the octree's cells
+        TriangleMesh mesh;
+        const double seconds = best_seconds(
+            [&] {
+              const IndicatorFunction chi = solve_indicator(samples, {}, indicator);
+              mesh = marching_tetrahedra([&](const Point& p) { return chi.evaluate(p); }, chi.iso_value(),
+                                         samples.points, isosurface);
+            },
+            3);
+        row(depth, fmt::format("ours, degree {}", degree), seconds, mesh, open3d.seconds / seconds);
+      }
+    }
+    const PeerResult cgal = cgal_poisson(samples, std::sqrt(surface_area(tooth.tooth) / 20000));
+    row(0, "CGAL, its own mesh", cgal.seconds, cgal.mesh, 0);
+  }
+}
+
+/// Table 1 of the paper.
+void distance(const std::filesystem::path& data) {
+  const auto teeth = predict_validation_teeth(data);
+  std::vector<GuidingCloud> clouds;
+  for (const BenchPrediction& tooth : teeth) clouds.push_back(assemble_guiding_cloud(tooth.crown, tooth.predicted));
+  const std::array<std::array<double, 3>, 4> paper{
+      {{1.0, 3.17e-2, 0.29}, {0.75, 2.29e-2, 0.26}, {0.5, 1.41e-2, 0.16}, {0.25, 7.1e-3, 0.12}}};
+  fmt::print("| e | d_avg | d_max | paper's d_avg | paper's d_max | vertices | s | self-intersecting pairs |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|\n");
+  for (const auto& [e, paper_mean, paper_most] : paper) {
+    double mean = 0, most = 0, vertices = 0, seconds = 0;
+    std::size_t crossing = 0, count = 0;
+    for (std::size_t i = 0; i < teeth.size(); ++i) {
+      TriangleMesh surface;
+      seconds += best_seconds([&] { surface = surface_of(clouds[i], teeth[i].crown, e); }, 1);
+      const Distances d = distances(teeth[i].crown.vertices, surface);
+      mean += d.mean * static_cast<double>(teeth[i].crown.vertices.size());
+      count += teeth[i].crown.vertices.size();
+      most = std::max(most, d.most);
+      vertices += static_cast<double>(surface.vertices.size());
+      crossing += self_intersecting_triangles(surface).size();
+    }
+    const auto n = static_cast<double>(teeth.size());
+    fmt::print("| {} | {:.2e} | {:.3f} | {:.2e} | {:.2f} | {:.0f} | {:.3f} | {} |\n", e,
+               mean / static_cast<double>(count), most, paper_mean, paper_most, vertices / n, seconds / n, crossing);
+    std::fflush(stdout);
+  }
+}
+
+/// Noisy normals, of which a part is turned over.
+std::vector<Eigen::Vector3d> noisy(const std::vector<Eigen::Vector3d>& normals, double noise, double turned,
+                                   std::mt19937_64& random) {
+  std::normal_distribution<double> normal(0.0, noise);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<Eigen::Vector3d> hints;
+  for (const Eigen::Vector3d& n : normals) {
+    const Eigen::Vector3d hint = n + Eigen::Vector3d(normal(random), normal(random), normal(random));
+    hints.push_back(uniform(random) < turned ? -hint : hint);
+  }
+  return hints;
+}
+
+double wrong_percent(const std::vector<Eigen::Vector3d>& normals, const std::vector<Eigen::Vector3d>& truth) {
+  std::size_t wrong = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i) wrong += normals[i].dot(truth[i]) <= 0 ? 1 : 0;
+  return 100.0 * static_cast<double>(wrong) / static_cast<double>(truth.size());
+}
+
+/// Share of points on the wrong side, from 2,000 points of each template and each validation tooth.
+void orientation(const std::filesystem::path& data) {
+  std::vector<std::pair<std::string, TriangleMesh>> teeth;
+  for (int fdi = 21; fdi <= 38; ++fdi) {
+    const auto file = data / "templates" / fmt::format("tooth_{}.ply", fdi);
+    if (std::filesystem::exists(file)) teeth.emplace_back(fmt::format("template {}", fdi), load_mesh(file).mesh);
+  }
+  for (BenchTooth& tooth : load_validation_teeth(data))
+    teeth.emplace_back(fmt::format("validation {}", tooth.fdi), std::move(tooth.tooth));
+  fmt::print("Points on the wrong side, percent. Noise of points in mm; hints: noise 0.5, 10 % turned over.\n\n");
+  fmt::print(
+      "| tooth | no hints | hints | hints as they are | noise 0.1, hints | s | iterative Poisson | iterations | s |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|\n");
+  for (const auto& [name, mesh] : teeth) {
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> normal(0.0, 0.1);
+    const OrientedPoints truth = samples_of(mesh, 2000);
+    std::vector<Point> moved = truth.points;
+    for (Point& p : moved) p += Eigen::Vector3d(normal(random), normal(random), normal(random));
+    const auto hints = noisy(truth.normals, 0.5, 0.1, random);
+    OrientedPoints hinted;
+    const double seconds = best_seconds([&] { hinted = orient_normals(truth.points, hints); }, 3);
+    IterativePoissonOptions options;
+    options.indicator.spacing = 0.4;
+    IterativePoisson iterated;
+    const double iterating = best_seconds([&] { iterated = iterative_poisson(truth.points, options); }, 1);
+    fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} | {:.3f} | {:.2f} | {} | {:.2f} |\n", name,
+               wrong_percent(orient_normals(truth.points).normals, truth.normals),
+               wrong_percent(hinted.normals, truth.normals), wrong_percent(hints, truth.normals),
+               wrong_percent(orient_normals(moved, hints).normals, truth.normals), seconds,
+               wrong_percent(iterated.oriented.normals, truth.normals), iterated.iterations, iterating);
+    std::fflush(stdout);
+  }
+}
+
+/// Table 5 of the paper: triangles of the plain isosurface of iterative Poisson.
+void ipsr(const std::filesystem::path& data) {
+  fmt::print(
+      "The paper's iterative Poisson: Q_avg 0.60-0.61, Q_min 7e-6 to 6e-4, theta_avg 32, theta_min 0.005-0.017, "
+      "38-40 % under 30 degrees.\n\n");
+  fmt::print(
+      "| tooth | Q_avg | Q_min | theta_avg | theta_min | % < 30 | iterations |\n|---|---|---|---|---|---|---|\n");
+  for (const BenchPrediction& tooth : predict_validation_teeth(data)) {
+    if (tooth.fdi > 37) continue;
+    const GuidingCloud cloud = assemble_guiding_cloud(tooth.crown, tooth.predicted);
+    const IterativePoisson result = iterative_poisson(cloud.samples.points);
+    const QualityFigures q = quality(result.surface).value_or(QualityFigures{});
+    fmt::print("| {} | {:.2f} | {:.1e} | {:.2f} | {:.1e} | {:.1f} | {} |\n", tooth.fdi, q.q_avg, q.q_min, q.theta_avg,
+               q.theta_min, q.percent_below_30, result.iterations);
+    std::fflush(stdout);
+  }
+}
+
+/// Time and memory over the number of samples and over area / spacing^2.
+void growth(const std::filesystem::path& data) {
+  const auto teeth = load_validation_teeth(data);
+  const auto molar = std::ranges::find(teeth, 36, &BenchTooth::fdi);
+  if (molar == teeth.end()) throw InputError("There is no tooth 36.");
+  const double area = surface_area(molar->tooth);
+  const auto table = [&](const std::string& title, const std::vector<std::pair<std::size_t, double>>& runs,
+                         const std::function<double(std::size_t, double)>& size) {
+    std::vector<double> sizes, seconds, stored;
+    fmt::print("{}\n\n| samples | spacing mm | s | functions | stored | cycles |\n|---|---|---|---|---|---|\n", title);
+    for (const auto& [count, spacing] : runs) {
+      const OrientedPoints samples = samples_of(molar->tooth, count);
+      IndicatorOptions options;
+      options.spacing = spacing;
+      IndicatorStatistics statistics;
+      seconds.push_back(best_seconds([&] { statistics = solve_indicator(samples, {}, options).statistics(); }, 3));
+      sizes.push_back(size(count, spacing));
+      stored.push_back(static_cast<double>(statistics.stored_functions));
+      fmt::print("| {} | {:.3f} | {:.3f} | {} | {} | {} |\n", count, spacing, seconds.back(), statistics.functions,
+                 statistics.stored_functions, statistics.cycles);
+      std::fflush(stdout);
+    }
+    fmt::print("\nFarthest from the straight line: time {:.0f} %, memory {:.0f} %.\n\n",
+               100 * fit_linear_growth(sizes, seconds).largest_deviation,
+               100 * fit_linear_growth(sizes, stored).largest_deviation);
+  };
+  // Samples as dense as the spacing asks for: both grow together.
+  std::vector<std::pair<std::size_t, double>> runs;
+  for (const double spacing : {0.28, 0.2, 0.14, 0.1, 0.07})
+    runs.emplace_back(static_cast<std::size_t>(area / (spacing * spacing)), spacing);
+  table("Samples and 1 / spacing^2 together", runs,
+        [](std::size_t count, double) { return static_cast<double>(count); });
 }
 
 }  // namespace
 }  // namespace rhizodont
 
 int main(int argc, char** argv) {
+  using namespace rhizodont;
   try {
-    if (argc < 3) return 2;
-    if (std::string(argv[2]) == "stages") rhizodont::stages(argv[1]);
+    const std::string table = argc == 3 ? argv[2] : "";
+    if (table == "stages")
+      stages(argv[1]);
+    else if (table == "peers")
+      peers(argv[1]);
+    else if (table == "distance")
+      distance(argv[1]);
+    else if (table == "orientation")
+      orientation(argv[1]);
+    else if (table == "ipsr")
+      ipsr(argv[1]);
+    else if (table == "growth")
+      growth(argv[1]);
+    else {
+      fmt::print(stderr, "usage: bench_poisson DATA stages|peers|distance|orientation|ipsr|growth\n");
+      return 2;
+    }
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

@@ -11,14 +11,14 @@
 namespace rhizodont {
 
 /// A validation tooth with what the completion network makes of its crown, as in the product.
-struct PredictedTooth {
+struct BenchPrediction {
   int fdi = 0;
   TriangleMesh crown;        ///< open, mm
   TriangleMesh tooth;        ///< the truth, closed, mm
   OrientedPoints predicted;  ///< mm
 };
 
-std::vector<PredictedTooth> predict_validation_teeth(const std::filesystem::path& data_folder);
+std::vector<BenchPrediction> predict_validation_teeth(const std::filesystem::path& data_folder);
 
 /// Shortest wall-clock time in seconds of `repeats` runs, which other work on the machine disturbs least.
 double best_seconds(const std::function<void()>& work, int repeats = 5);

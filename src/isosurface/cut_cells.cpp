@@ -168,8 +168,9 @@ CutCells Flood::result() {
     throw NoResultError("There is no surface near the points: the field has the same side everywhere around them.");
   const auto most = std::ranges::max_element(component_seeds_);  // the first of equals
   const auto kept = static_cast<std::size_t>(most - component_seeds_.begin());
-  const std::size_t begin = component_begin_[kept];
-  const std::size_t end = kept + 1 < component_begin_.size() ? component_begin_[kept + 1] : cells_.size();
+  const bool one = !options_.every_component;
+  const std::size_t begin = one ? component_begin_[kept] : 0;
+  const std::size_t end = one && kept + 1 < component_begin_.size() ? component_begin_[kept + 1] : cells_.size();
   CutCells result;
   result.visited = cells_.size();
   result.other_components = component_begin_.size() - 1;

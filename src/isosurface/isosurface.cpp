@@ -4,6 +4,8 @@
 // MidNormal and GradNormal (Hass and Trnkova, Approximating isosurfaces by guaranteed-quality triangular meshes, 2020).
 #include "isosurface/isosurface.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <cmath>
 
 #include "isosurface/ball_labels.hpp"
@@ -101,6 +103,25 @@ Isosurface grad_normal(const ScalarField& field, double iso, std::span<const Poi
   for (const EdgeVertex& vertex : extraction.vertices) extraction.surface.mesh.vertices.push_back(vertex.position);
   check_outward(extraction.surface.mesh);
   return std::move(extraction.surface);
+}
+
+TriangleMesh marching_tetrahedra(const ScalarField& field, double iso, std::span<const Point> seeds,
+                                 const IsosurfaceOptions& options) {
+  check_options(options, iso);
+  const GoldbergTiling tiling(options.e, options.origin);
+  const CutCells cells = find_cut_cells(field, iso, seeds, tiling, options);
+  EdgeMesh edge_mesh = triangulate_cells(cells);
+  TriangleMesh mesh;
+  mesh.triangles = std::move(edge_mesh.triangles);
+  mesh.vertices.resize(edge_mesh.edges.size());
+  tbb::parallel_for(std::size_t{0}, mesh.vertices.size(), [&](std::size_t v) {
+    const auto& [in, out] = edge_mesh.edges[v];
+    const Point inside = tiling.position(cells.vertices[static_cast<std::size_t>(in)]);
+    const Point outside = tiling.position(cells.vertices[static_cast<std::size_t>(out)]);
+    const double above = field(inside).value - iso, below = iso - field(outside).value;
+    mesh.vertices[v] = inside + above / (above + below) * (outside - inside);
+  });
+  return mesh;
 }
 
 }  // namespace rhizodont

@@ -15,6 +15,7 @@
 #include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
 #include "pipeline/closed_crown.hpp"
+#include "pipeline/crown_fit.hpp"
 #include "pipeline/crown_input.hpp"
 #include "pipeline/guiding_cloud.hpp"
 #include "pipeline/models.hpp"
@@ -88,12 +89,16 @@ CrownFrame find_frame(const TriangleMesh& crown, const Atlas& atlas, const Compl
   return frame;
 }
 
-/// The guiding surface M: indicator function of the cloud, meshed by GradNormal.
-TriangleMesh build_guiding_surface(const GuidingCloud& cloud, double e) {
+/// The guiding surface M: indicator function of the cloud, meshed by GradNormal and drawn onto the crown.
+TriangleMesh build_guiding_surface(const GuidingCloud& cloud, const TriangleMesh& crown, double e) {
   GuidingSurfaceOptions options;
   options.isosurface.e = e;
   const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));
-  return guiding_surface(cloud.samples, cloud.confidence, seeds, options).surface.mesh;
+  TriangleMesh surface = guiding_surface(cloud.samples, cloud.confidence, seeds, options).surface.mesh;
+  CrownFitOptions fit;
+  fit.tolerance = 0.015 * e;
+  fit_to_crown(surface, crown, fit);
+  return surface;
 }
 
 void note_guiding_distance(const TriangleMesh& crown, const TriangleMesh& surface, CompletionRecord& record) {
@@ -211,7 +216,7 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   clock.begin("orientation");
   const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, predicted.cloud);
   clock.begin("guiding surface");
-  TriangleMesh surface = build_guiding_surface(cloud, options.e);
+  TriangleMesh surface = build_guiding_surface(cloud, crown.mesh, options.e);
   for (std::vector<Point>* points : {&surface.vertices, &predicted.cloud.points})
     steer_root(*points, crown.mesh, frame.frame, record.fdi, options.steering);
   note_guiding_distance(crown.mesh, surface, record);

@@ -30,8 +30,7 @@ SplineTables spline_tables(int degree) {
     tables.stiffness[entry] =
         2.0 * centred_spline(product - 2, k) - centred_spline(product - 2, k + 1) - centred_spline(product - 2, k - 1);
   }
-  tables.refinement =
-      degree == 1 ? std::array<double, 4>{0.5, 1.0, 0.5, 0.0} : std::array<double, 4>{0.25, 0.75, 0.75, 0.25};
+  tables.refinement = spline_refinement<double>(degree);
   return tables;
 }
 

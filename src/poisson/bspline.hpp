@@ -18,6 +18,13 @@ struct SplineTables {
 /// Precondition: degree 1 or 2.
 SplineTables spline_tables(int degree);
 
+/// `SplineTables::refinement` as other numbers.
+template <class Scalar>
+std::array<Scalar, 4> spline_refinement(int degree) {
+  if (degree == 1) return {Scalar(0.5), Scalar(1), Scalar(0.5), Scalar(0)};
+  return {Scalar(0.25), Scalar(0.75), Scalar(0.75), Scalar(0.25)};
+}
+
 /// Values at t in [0, 1] of a cell of the splines that live on it, the one that starts earliest first (degree + 1 of
 /// them, the rest 0).
 inline std::array<double, 3> spline_values(int degree, double t) {

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Screened Poisson reconstruction (Kazhdan, Bolitho and Hoppe 2006; Kazhdan and Hoppe 2013) on a regular B-spline grid
-// that fits the samples' box, with the function zero outside.
+// Screened Poisson reconstruction (Kazhdan, Bolitho and Hoppe 2006; Kazhdan and Hoppe 2013) with B-splines on levels of
+// a box around the samples, with the function zero outside.
 #include "poisson/indicator.hpp"
 
 #include <fmt/format.h>
@@ -15,13 +15,15 @@
 #include "poisson/bspline.hpp"
 #include "poisson/multigrid.hpp"
 #include "poisson/normal_field.hpp"
+#include "poisson/spline_level.hpp"
 #include "poisson/surface_shares.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {
 namespace {
 
-constexpr double largest_grid = 40e6;  // cells: about 4 GB
+constexpr int side = SplineLevel::side;
+constexpr double largest_directory = 3e7;  // blocks that the finest level would have if it were complete
 
 void check_options(const IndicatorOptions& options) {
   const auto require = [](bool holds, const char* sentence) {
@@ -63,41 +65,65 @@ OrientedPoints checked_samples(const OrientedPoints& samples, std::span<const do
   return unit;
 }
 
-/// Covers the samples with the margin. Cells come in multiples of 8, so that coarser grids cover the same box, and no
-/// side is so much shorter than another that the coarsest grid would stay large.
-SplineGrid fitted_grid(const std::vector<Point>& points, const IndicatorOptions& options) {
+LevelLayout fitted_layout(const std::vector<Point>& points, const LevelOptions& options) {
   Eigen::AlignedBox3d box;
   for (const Point& p : points) box.extend(p);
-  const double margin = std::max(options.margin, 3.0 * options.spacing);
-  SplineGrid grid;
-  grid.degree = options.degree;
-  grid.spacing = options.spacing;
-  const Eigen::Array3d wanted = ((box.sizes().array() + 2.0 * margin) / options.spacing).max(1.0);
-  const double least = wanted.maxCoeff() / 16.0;
-  const Eigen::Array3d cells = (wanted.max(least) / 8.0).ceil() * 8.0;
-  if (!(cells.prod() <= largest_grid))
+  const LevelLayout layout = lay_out_levels(box, options);
+  if (!(layout.directory_size() <= largest_directory))
     throw UsageError(
         fmt::format("A spacing of {} mm is too fine for points that extend over {:.4g} x {:.4g} x {:.4g} mm (are they "
-                    "in millimetres, "
-                    "and is there none far away from the others?).",
+                    "in millimetres, and is there none far away from the others?).",
                     options.spacing, box.sizes().x(), box.sizes().y(), box.sizes().z()));
-  for (std::size_t axis = 0; axis < 3; ++axis)
-    grid.cells[axis] = static_cast<int>(cells[static_cast<Eigen::Index>(axis)]);
-  grid.origin = box.center() - 0.5 * options.spacing * cells.matrix();
-  return grid;
+  return layout;
 }
 
-/// Each sample pulls with its share of the surface over the width of the solution's step there.
-std::vector<ScreeningSample> screening_samples(const SplineGrid& grid, const OrientedPoints& samples,
-                                               std::span<const double> shares, std::span<const double> weights,
-                                               const IndicatorOptions& options) {
-  std::vector<ScreeningSample> screening(samples.points.size());
-  for (std::size_t s = 0; s < screening.size(); ++s) {
-    const double confidence = weights.empty() ? 1.0 : weights[s];
-    const double width = smearing_width(grid, shares[s], options.samples_per_cell);
-    screening[s] = {samples.points[s], options.screening * confidence * shares[s] / width};
+/// The samples with the levels that they ask for.
+struct Depths {
+  std::vector<double> width;  // mm, of the splines that suit the sample's density
+  std::vector<double> depth;  // the level with such splines, between two levels as a rule
+  std::vector<LevelSample> reach;
+};
+
+Depths depths_of(const std::vector<Point>& points, std::span<const double> shares, const LevelLayout& layout,
+                 double samples_per_cell) {
+  const double finest = layout.spacing(layout.count - 1);
+  Depths depths;
+  for (std::size_t s = 0; s < points.size(); ++s) {
+    const double width = std::clamp(std::sqrt(samples_per_cell * shares[s]), finest, layout.coarsest_spacing);
+    const double depth = std::clamp(layout.count - 1 - std::log2(width / finest), 0.0, layout.count - 1.0);
+    depths.width.push_back(width);
+    depths.depth.push_back(depth);
+    depths.reach.push_back({points[s], static_cast<int>(std::ceil(depth))});
   }
-  return screening;
+  return depths;
+}
+
+bool touches_active(const SplineLevel& level, const Point& p) {
+  bool touches = false;
+  for_each_function(level, p, [&](std::size_t f, double) { touches = touches || level.active[f]; });
+  return touches;
+}
+
+/// Each sample pulls with its share of the surface over the width of the solution's step there, on the finest level
+/// that knows of it; of several in a cell their mean pulls, as in Kazhdan and Hoppe's adaptive discretisation.
+std::vector<std::vector<ScreeningSample>> screening_samples(const std::vector<SplineLevel>& levels,
+                                                            const std::vector<Point>& points,
+                                                            std::span<const double> shares,
+                                                            std::span<const double> width,
+                                                            std::span<const double> weights, double screening) {
+  std::vector<std::size_t> level_of(points.size());
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t s) {
+    std::size_t l = levels.size() - 1;
+    while (l > 0 && !touches_active(levels[l], points[s])) --l;
+    level_of[s] = l;
+  });
+  std::vector<std::vector<ScreeningSample>> samples(levels.size());
+  for (std::size_t s = 0; s < points.size(); ++s) {
+    const double confidence = weights.empty() ? 1.0 : weights[s];
+    samples[level_of[s]].push_back({points[s], screening * confidence * shares[s] / width[s]});
+  }
+  for (std::size_t l = 0; l < levels.size(); ++l) samples[l] = merge_samples(levels[l], samples[l]);
+  return samples;
 }
 
 double weighted_mean(const IndicatorFunction& function, const std::vector<Point>& points,
@@ -116,25 +142,79 @@ double weighted_mean(const IndicatorFunction& function, const std::vector<Point>
 
 }  // namespace
 
+void IndicatorFunction::store(const std::vector<SplineLevel>& levels, const std::vector<double>& coefficients) {
+  const std::vector<double> sums = accumulated(levels, coefficients);
+  const int wide = side + degree_;
+  const auto volume = static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide);
+  for (const SplineLevel& spline : levels) {
+    Level level;
+    level.blocks = {spline.blocks_along(0), spline.blocks_along(1), spline.blocks_along(2)};
+    level.directory = spline.directory;
+    level.below.assign(spline.blocks.size(), 0);
+    level.coefficients.resize(spline.blocks.size() * volume);
+    tbb::parallel_for(std::size_t{0}, spline.blocks.size(), [&](std::size_t b) {
+      const auto& [x, y, z] = spline.blocks[b];
+      for (int n = 0; n < 8; ++n) {
+        const std::array<int, 3> at{x - n % 2, y - n / 2 % 2, z - n / 4};
+        const bool known = std::ranges::min(at) < 0 || spline.find(at[0], at[1], at[2]) >= 0;
+        if (known) level.below[b] = static_cast<std::uint8_t>(level.below[b] | (1 << n));
+      }
+      gather_box(spline, sums.data() + spline.first, {side * x - degree_, side * y - degree_, side * z - degree_}, wide,
+                 level.coefficients.data() + b * volume);
+    });
+    levels_.push_back(std::move(level));
+  }
+}
+
+/// The coefficients of the functions on a cell of the finest level or of the coarser one around it, whichever is the
+/// first to be known.
+IndicatorFunction::Cell IndicatorFunction::find_cell(const std::array<int, 3>& finest) const {
+  const int wide = side + degree_;
+  const auto volume = static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide);
+  for (std::size_t up = 0; up < levels_.size(); ++up) {
+    const Level& level = levels_[levels_.size() - 1 - up];
+    const int x = finest[0] >> up, y = finest[1] >> up, z = finest[2] >> up;
+    const std::int32_t b =
+        level.directory[(static_cast<std::size_t>(z / side) * static_cast<std::size_t>(level.blocks[1]) +
+                         static_cast<std::size_t>(y / side)) *
+                            static_cast<std::size_t>(level.blocks[0]) +
+                        static_cast<std::size_t>(x / side)];
+    if (b < 0) continue;
+    const int i = x % side, j = y % side, k = z % side;
+    // The functions of a cell near the block's lower sides come from the blocks below it.
+    const int below = (i < degree_ ? 1 : 0) + (j < degree_ ? 2 : 0) + (k < degree_ ? 4 : 0);
+    const std::uint8_t known = level.below[static_cast<std::size_t>(b)];
+    bool complete = true;
+    for (int n = 1; n < 8; ++n)
+      if ((n & below) == n && !(known & (1 << n))) complete = false;
+    if (!complete) continue;
+    return {level.coefficients.data() + static_cast<std::size_t>(b) * volume +
+                static_cast<std::size_t>((k * wide + j) * wide + i),
+            static_cast<int>(up)};
+  }
+  return {nullptr, 0};
+}
+
 FieldSample IndicatorFunction::evaluate(const Point& p) const {
   FieldSample sample;
   const Eigen::Array3d at = (p - box_.min()).array() / spacing_;
-  const Eigen::Array3d cells(size_[0] - degree_, size_[1] - degree_, size_[2] - degree_);
+  const Eigen::Array3d cells(cells_[0], cells_[1], cells_[2]);
   if (!(at >= 0.0).all() || !(at <= cells).all()) return sample;
-  std::array<std::size_t, 3> first{};
+  std::array<int, 3> finest{};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    finest[axis] = std::min(static_cast<int>(at[static_cast<Eigen::Index>(axis)]), cells_[axis] - 1);
+  const Cell cell = find_cell(finest);
+  const double scale = 1.0 / static_cast<double>(1 << cell.up);
   std::array<std::array<double, 3>, 3> values, slopes;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto a = static_cast<Eigen::Index>(axis);
-    const double cell = std::min(std::floor(at[a]), cells[a] - 1.0);
-    first[axis] = static_cast<std::size_t>(cell);
-    values[axis] = spline_values(degree_, at[a] - cell);
-    slopes[axis] = spline_derivatives(degree_, at[a] - cell);
+    const double t = at[static_cast<Eigen::Index>(axis)] * scale - (finest[axis] >> cell.up);
+    values[axis] = spline_values(degree_, t);
+    slopes[axis] = spline_derivatives(degree_, t);
   }
-  const auto row = static_cast<std::size_t>(size_[0]), plane = row * static_cast<std::size_t>(size_[1]);
-  const auto count = static_cast<std::size_t>(degree_ + 1);
+  const auto wide = static_cast<std::size_t>(side + degree_), count = static_cast<std::size_t>(degree_ + 1);
   for (std::size_t k = 0; k < count; ++k)
     for (std::size_t j = 0; j < count; ++j) {
-      const double* line = coefficients_.data() + (first[2] + k) * plane + (first[1] + j) * row + first[0];
+      const double* line = cell.first + (k * wide + j) * wide;
       double value = 0.0, slope = 0.0;
       for (std::size_t i = 0; i < count; ++i) {
         value += values[0][i] * line[i];
@@ -145,7 +225,7 @@ FieldSample IndicatorFunction::evaluate(const Point& p) const {
       sample.gradient +=
           Eigen::Vector3d(yz * slope, slopes[1][j] * values[2][k] * value, values[1][j] * slopes[2][k] * value);
     }
-  sample.gradient /= spacing_;
+  sample.gradient *= scale / spacing_;
   return sample;
 }
 
@@ -157,35 +237,37 @@ IndicatorFunction solve_indicator(const OrientedPoints& samples, std::span<const
                                   const IndicatorOptions& options) {
   check_options(options);
   const OrientedPoints unit = checked_samples(samples, weights);
-  const SplineGrid grid = fitted_grid(unit.points, options);
+  LevelOptions level_options;
+  level_options.degree = options.degree;
+  level_options.spacing = options.spacing;
+  level_options.margin = options.margin;
+  const LevelLayout layout = fitted_layout(unit.points, level_options);
   const std::vector<double> shares = surface_shares(unit, options.neighbours);
   const double area = std::accumulate(shares.begin(), shares.end(), 0.0);
   if (!(area > 0.0)) throw InputError("All points lie in one place.");
 
-  std::vector<double> load(grid.size(), 0.0);
-  add_normal_load(grid, unit, shares, options.samples_per_cell, load);
-  const auto screening = screening_samples(grid, unit, shares, weights, options);
-  ScreeningOperator<double>(grid, screening).add_load(0.5, load);
-  const PoissonSolution solution = solve_screened_poisson(grid, screening, load, options.tolerance, options.max_cycles);
+  const Depths depths = depths_of(unit.points, shares, layout, options.samples_per_cell);
+  const std::vector<SplineLevel> levels = build_levels(layout, depths.reach, level_options);
+  const auto screening = screening_samples(levels, unit.points, shares, depths.width, weights, options.screening);
+  LevelField load = normal_load(levels, unit, shares, depths.depth);
+  add_screening_load(levels, screening, 0.5, load);
+  const PoissonSolution solution =
+      solve_screened_poisson(levels, screening, load, options.tolerance, options.max_cycles);
   if (!(solution.relative_residual <= 1.01 * options.tolerance))
     throw NoResultError(fmt::format("The surface's equation was solved to {:.1e} only, not to {:.1e}, in {} cycles.",
                                     solution.relative_residual, options.tolerance, solution.cycles));
 
   IndicatorFunction function;
-  function.degree_ = grid.degree;
-  function.spacing_ = grid.spacing;
-  for (std::size_t axis = 0; axis < 3; ++axis) function.size_[axis] = grid.cells[axis] + grid.degree;
-  const Eigen::Vector3d extent(grid.cells[0], grid.cells[1], grid.cells[2]);
-  function.box_ = {grid.origin, grid.origin + grid.spacing * extent};
-  function.coefficients_.reserve(static_cast<std::size_t>(function.size_[0]) *
-                                 static_cast<std::size_t>(function.size_[1]) *
-                                 static_cast<std::size_t>(function.size_[2]));
-  for (int z = -grid.degree; z < grid.cells[2]; ++z)
-    for (int y = -grid.degree; y < grid.cells[1]; ++y) {
-      const double* line = solution.coefficients.data() + grid.index(-grid.degree, y, z);
-      function.coefficients_.insert(function.coefficients_.end(), line, line + function.size_[0]);
-    }
-  function.statistics_ = {solution.cycles, solution.relative_residual, grid.cells, area};
+  function.degree_ = options.degree;
+  function.spacing_ = layout.spacing(layout.count - 1);
+  function.cells_ = levels.back().cells;
+  const Eigen::Vector3d extent(function.cells_[0], function.cells_[1], function.cells_[2]);
+  function.box_ = {layout.origin, layout.origin + function.spacing_ * extent};
+  function.store(levels, solution.coefficients);
+  IndicatorStatistics& statistics = function.statistics_;
+  statistics = {solution.cycles, solution.relative_residual, layout.count, 0, field_size(levels), area};
+  for (const SplineLevel& level : levels)
+    statistics.functions += static_cast<std::size_t>(std::ranges::count(level.active, 1));
   function.iso_value_ = weighted_mean(function, unit.points, shares, weights);
   return function;
 }

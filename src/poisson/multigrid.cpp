@@ -1,28 +1,25 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Conjugate gradients in double, preconditioned by one symmetric multigrid cycle in single precision. The spline spaces
-// of halved grids are nested, so prolongation is exact and its transpose restricts. The smoother is a Chebyshev
-// polynomial (Adams, Brezina, Hu, Tuminaro 2003) over a diagonal that bounds the operator: the Laplacian's largest
-// eigenvalue plus the screening's row sums, so no eigenvalue has to be estimated.
+// Conjugate gradients in double over the functions of all levels, preconditioned by one multigrid cycle in single
+// precision. That set of functions is redundant; the operator is then singular but consistent, and conjugate gradients
+// do not mind (Griebel 1994, multilevel algorithms as iterations over generating systems).
 #include "poisson/multigrid.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-#include "poisson/kernels.hpp"
-#include "poisson/stencils.hpp"
+#include "poisson/bspline.hpp"
+#include "poisson/level_cycle.hpp"
 
 namespace rhizodont {
 namespace {
 
-constexpr int smoothing_degree = 3;
-constexpr double smoothed_part = 1.0 / 20.0;  // of the spectrum's top: what lies below is left to the coarser grid
-constexpr std::size_t chunk = 1 << 14;
+constexpr std::size_t block_size = SplineLevel::block;
+constexpr std::size_t chunk = 1 << 13;
 
 template <class Body>
 void for_each_chunk(std::size_t size, const Body& body) {
@@ -31,7 +28,7 @@ void for_each_chunk(std::size_t size, const Body& body) {
 }
 
 /// Sum over fixed chunks, so that rounding does not depend on the threads.
-double dot(const std::vector<double>& a, const std::vector<double>& b) {
+double dot(const LevelField& a, const LevelField& b) {
   std::vector<double> sums((a.size() + chunk - 1) / chunk);
   for_each_chunk(a.size(), [&](std::size_t c, std::size_t begin, std::size_t end) {
     sums[c] = Eigen::Map<const Eigen::VectorXd>(a.data() + begin, static_cast<Eigen::Index>(end - begin))
@@ -40,224 +37,113 @@ double dot(const std::vector<double>& a, const std::vector<double>& b) {
   return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
-/// One grid of the hierarchy, in single precision.
-class Level {
- public:
-  Level(const SplineGrid& g, const std::vector<ScreeningSample>& samples)
-      : grid(g),
-        x(g.size()),
-        r(g.size()),
-        laplace_(g),
-        screening_(g, samples),
-        direction_(g.size()),
-        product_(g.size()) {
-    std::vector<float> row_sums(g.size(), 0.0F);
-    screening_.add_load(1.0F, row_sums);
-    inverse_bound_.assign(g.size(), 0.0F);
-    const auto bound = static_cast<float>(laplace_.largest_eigenvalue());
-    for (int z = 0; z < g.functions(2); ++z)
-      for (int y = 0; y < g.functions(1); ++y)
-        for (int i = 0; i < g.functions(0); ++i)
-          inverse_bound_[g.index(i, y, z)] = 1.0F / (bound + row_sums[g.index(i, y, z)]);
-  }
+SymmetricTaps<double> taps(const std::array<double, 5>& table) { return {table[2], table[3], table[4]}; }
 
-  void apply(const std::vector<float>& u, std::vector<float>& out) {
-    laplace_.apply(u, out);
-    screening_.add(u, out);
-  }
-
-  /// Improves x for A x = b where r = b - A x comes in; r is out of date by the last step afterwards.
-  void smooth() {
-    const double middle = 0.5 * (1.0 + smoothed_part), half = 0.5 * (1.0 - smoothed_part), ratio = middle / half;
-    double rho = 1.0 / ratio;
-    step(0.0, 1.0 / middle, false);
-    for (int k = 1; k < smoothing_degree; ++k) {
-      const double next = 1.0 / (2.0 * ratio - rho);
-      apply(direction_, product_);
-      step(next * rho, 2.0 * next / half, true);
-      rho = next;
-    }
-  }
-
-  /// Brings r up to date after `smooth`.
-  void finish_residual() {
-    apply(direction_, product_);
-    for_each_chunk(r.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) r[i] -= product_[i];
-    });
-  }
-
-  /// Adds the coarse correction, and brings r up to date.
-  void correct(const SplineGrid& fine, const std::vector<float>& coarse) {
-    std::fill(direction_.begin(), direction_.end(), 0.0F);
-    prolong_add(fine, coarse, direction_);
-    for_each_chunk(x.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) x[i] += direction_[i];
-    });
-    finish_residual();
-  }
-
-  SplineGrid grid;
-  std::vector<float> x, r;
-
- private:
-  void step(double keep, double scale, bool changed) {
-    for_each_chunk(x.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-      chebyshev_step(end - begin, static_cast<float>(keep), static_cast<float>(scale), inverse_bound_.data() + begin,
-                     changed ? product_.data() + begin : nullptr, r.data() + begin, direction_.data() + begin,
-                     x.data() + begin);
-    });
-  }
-
-  LaplaceStencil<float> laplace_;
-  ScreeningOperator<float> screening_;
-  std::vector<float> direction_, product_, inverse_bound_;
-};
-
-/// The functions inside the box of a small grid, as a dense factorised matrix.
-class DenseSolver {
- public:
-  explicit DenseSolver(Level& level) {
-    const SplineGrid& g = level.grid;
-    for (int z = 0; z < g.functions(2); ++z)
-      for (int y = 0; y < g.functions(1); ++y)
-        for (int i = 0; i < g.functions(0); ++i) positions_.push_back(g.index(i, y, z));
-    const auto n = static_cast<Eigen::Index>(positions_.size());
-    Eigen::MatrixXd matrix(n, n);
-    std::vector<float> unit(g.size(), 0.0F), column(g.size(), 0.0F);
-    for (Eigen::Index j = 0; j < n; ++j) {
-      unit[positions_[static_cast<std::size_t>(j)]] = 1.0F;
-      level.apply(unit, column);
-      unit[positions_[static_cast<std::size_t>(j)]] = 0.0F;
-      for (Eigen::Index i = 0; i < n; ++i)
-        matrix(i, j) = static_cast<double>(column[positions_[static_cast<std::size_t>(i)]]);
-    }
-    factor_.compute(0.5 * (matrix + matrix.transpose()));
-  }
-
-  void solve(const std::vector<float>& r, std::vector<float>& x) const {
-    Eigen::VectorXd right(static_cast<Eigen::Index>(positions_.size()));
-    for (Eigen::Index i = 0; i < right.size(); ++i)
-      right[i] = static_cast<double>(r[positions_[static_cast<std::size_t>(i)]]);
-    const Eigen::VectorXd solution = factor_.solve(right);
-    for (Eigen::Index i = 0; i < right.size(); ++i)
-      x[positions_[static_cast<std::size_t>(i)]] = static_cast<float>(solution[i]);
-  }
-
- private:
-  std::vector<std::size_t> positions_;
-  Eigen::LLT<Eigen::MatrixXd> factor_;
-};
-
-class Multigrid {
- public:
-  Multigrid(const SplineGrid& grid, const std::vector<ScreeningSample>& samples) {
-    std::vector<ScreeningSample> merged = samples;
-    SplineGrid g = grid;
-    levels_.push_back(std::make_unique<Level>(g, merged));
-    while (std::ranges::max(g.cells) > 8 && std::ranges::min(g.cells) / 2 > g.degree) {
-      g = g.coarser();
-      merged = merge_samples(g, merged);
-      levels_.push_back(std::make_unique<Level>(g, merged));
-    }
-    coarsest_ = std::make_unique<DenseSolver>(*levels_.back());
-  }
-
-  Level& finest() { return *levels_.front(); }
-
-  /// x = about A^-1 r on the level, by one V-cycle; r is used up.
-  void cycle(std::size_t l) {
-    Level& level = *levels_[l];
-    if (l + 1 == levels_.size()) {
-      coarsest_->solve(level.r, level.x);
-      return;
-    }
-    std::fill(level.x.begin(), level.x.end(), 0.0F);
-    level.smooth();
-    level.finish_residual();
-    restrict_field(level.grid, level.r, levels_[l + 1]->r);
-    cycle(l + 1);
-    level.correct(level.grid, levels_[l + 1]->x);
-    level.smooth();
-  }
-
-  /// x = about A^-1 r on the finest level: the coarsest problem first, each solution the start of the next finer one.
-  void full_cycle() {
-    const std::vector<float> load = finest().r;
-    std::vector<std::vector<float>> loads{load};
-    for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
-      loads.emplace_back(levels_[l + 1]->grid.size(), 0.0F);
-      restrict_field(levels_[l]->grid, loads[l], loads[l + 1]);
-    }
-    levels_.back()->r = loads.back();
-    cycle(levels_.size() - 1);
-    for (std::size_t l = levels_.size() - 1; l-- > 0;) {
-      Level& level = *levels_[l];
-      std::vector<float> start(level.grid.size(), 0.0F), product(level.grid.size(), 0.0F);
-      prolong_add(level.grid, levels_[l + 1]->x, start);
-      level.apply(start, product);
-      for (std::size_t i = 0; i < product.size(); ++i) level.r[i] = loads[l][i] - product[i];
-      cycle(l);
-      for (std::size_t i = 0; i < product.size(); ++i) level.x[i] += start[i];
-    }
-  }
-
- private:
-  std::vector<std::unique_ptr<Level>> levels_;
-  std::unique_ptr<DenseSolver> coarsest_;
-};
-
-/// The operator in double.
-class ScreenedLaplacian {
- public:
-  ScreenedLaplacian(const SplineGrid& grid, const std::vector<ScreeningSample>& samples)
-      : laplace_(grid), screening_(grid, samples) {}
-  void apply(const std::vector<double>& u, std::vector<double>& out) {
-    laplace_.apply(u, out);
-    screening_.add(u, out);
-  }
-
- private:
-  LaplaceStencil<double> laplace_;
-  ScreeningOperator<double> screening_;
-};
+/// The sums on level l from those on the level below.
+void accumulate_level(const std::vector<SplineLevel>& levels, std::size_t l, const LevelField& coefficients,
+                      LevelField& sums) {
+  const SplineLevel& level = levels[l];
+  tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
+    const std::size_t begin = level.first + b * block_size;
+    if (l > 0)
+      prolong_block(level, b, levels[l - 1], sums.data() + levels[l - 1].first, sums.data() + begin);
+    else
+      std::fill_n(sums.data() + begin, block_size, 0.0);
+    for (std::size_t i = begin; i < begin + block_size; ++i) sums[i] += coefficients[i];
+  });
+}
 
 }  // namespace
 
-void apply_screened_laplacian(const SplineGrid& grid, const std::vector<ScreeningSample>& samples,
-                              const SplineField<double>& u, SplineField<double>& out) {
-  ScreenedLaplacian(grid, samples).apply(u, out);
+std::size_t field_size(const std::vector<SplineLevel>& levels) { return levels.back().first + levels.back().size(); }
+
+LevelField accumulated(const std::vector<SplineLevel>& levels, const LevelField& coefficients) {
+  LevelField sums(field_size(levels));
+  for (std::size_t l = 0; l < levels.size(); ++l) accumulate_level(levels, l, coefficients, sums);
+  return sums;
 }
 
-PoissonSolution solve_screened_poisson(const SplineGrid& grid, const std::vector<ScreeningSample>& samples,
-                                       const SplineField<double>& load, double tolerance, int max_cycles) {
+ScreenedLaplacian::ScreenedLaplacian(const std::vector<SplineLevel>& levels,
+                                     const std::vector<std::vector<ScreeningSample>>& samples)
+    : levels_(levels), samples_(levels.size()), sums_(field_size(levels)), outer_(field_size(levels)) {
+  tbb::parallel_for(std::size_t{0}, levels.size(),
+                    [&](std::size_t l) { samples_[l] = BlockSamples<double>(levels[l], samples[l]); });
+}
+
+void ScreenedLaplacian::apply(const LevelField& coefficients, LevelField& out) {
+  for (std::size_t l = 0; l < levels_.size(); ++l) accumulate_level(levels_, l, coefficients, sums_);
+  // Level by level from the finest: what its own and finer functions contribute (`outer_`, also beyond the active
+  // functions) passes on to coarser levels; what coarser functions contribute on this level is part of `sums_`.
+  for (std::size_t l = levels_.size(); l-- > 0;) {
+    const SplineLevel& level = levels_[l];
+    const SplineTables tables = spline_tables(level.degree);
+    const auto mass = taps(tables.mass), stiffness = taps(tables.stiffness);
+    tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
+      std::array<double, largest_patch> patch, scratch;
+      std::array<double, block_size> shared{}, own, all;
+      const std::size_t begin = level.first + b * block_size;
+      gather_patch(level, coefficients.data() + level.first, b, patch.data());
+      block_stiffness(level.degree, mass, stiffness, patch.data(), own.data());
+      gather_patch(level, sums_.data() + level.first, b, patch.data());
+      block_stiffness(level.degree, mass, stiffness, patch.data(), all.data());
+      if (l + 1 < levels_.size())
+        restrict_block(level, b, levels_[l + 1], outer_.data() + levels_[l + 1].first, shared.data());
+      add_screening<double>(level, samples_[l].of(b), patch.data(), scratch.data(), shared.data());
+      for (std::size_t i = 0; i < block_size; ++i) {
+        outer_[begin + i] = shared[i] + level.spacing * own[i];
+        out[begin + i] = level.active[b * block_size + i] ? shared[i] + level.spacing * all[i] : 0.0;
+      }
+    });
+  }
+}
+
+void add_screening_load(const std::vector<SplineLevel>& levels,
+                        const std::vector<std::vector<ScreeningSample>>& samples, double value, LevelField& load) {
+  LevelField outer(field_size(levels), 0.0);
+  for (std::size_t l = levels.size(); l-- > 0;) {
+    const SplineLevel& level = levels[l];
+    double* field = outer.data() + level.first;
+    if (l + 1 < levels.size())
+      tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
+        restrict_block(level, b, levels[l + 1], outer.data() + levels[l + 1].first, field + b * block_size);
+      });
+    for (const ScreeningSample& sample : samples[l])
+      for_each_function(level, sample.position,
+                        [&](std::size_t f, double spline) { field[f] += value * sample.weight * spline; });
+    for (std::size_t i = 0; i < level.size(); ++i)
+      if (level.active[i]) load[level.first + i] += field[i];
+  }
+}
+
+PoissonSolution solve_screened_poisson(const std::vector<SplineLevel>& levels,
+                                       const std::vector<std::vector<ScreeningSample>>& samples, const LevelField& load,
+                                       double tolerance, int max_cycles) {
   PoissonSolution solution;
-  solution.coefficients.assign(grid.size(), 0.0);
-  std::vector<double>& x = solution.coefficients;
+  solution.coefficients.assign(load.size(), 0.0);
+  LevelField& x = solution.coefficients;
   const double norm = std::sqrt(dot(load, load));
   if (!(norm > 0.0)) return solution;
 
-  ScreenedLaplacian laplacian(grid, samples);
-  Multigrid multigrid(grid, samples);
-  std::vector<double> r = load, p(grid.size(), 0.0), q(grid.size(), 0.0), z(grid.size(), 0.0);
-  const auto precondition = [&](bool full) {
+  ScreenedLaplacian laplacian(levels, samples);
+  LevelCycle cycle_on_levels(levels, samples);
+  LevelField r = load, p(load.size(), 0.0), q(load.size(), 0.0), z(load.size(), 0.0);
+  std::vector<float> single_r(load.size()), single_z(load.size());
+  const auto precondition = [&](double size) {
     // Scaled to unit size, so that single precision holds it whatever the residual.
-    const double scale = std::sqrt(dot(r, r));
-    Level& finest = multigrid.finest();
     for_each_chunk(r.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) finest.r[i] = static_cast<float>(r[i] / scale);
+      for (std::size_t i = begin; i < end; ++i) single_r[i] = static_cast<float>(r[i] / size);
     });
-    full ? multigrid.full_cycle() : multigrid.cycle(0);
+    cycle_on_levels.apply(single_r, single_z);
     for_each_chunk(r.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) z[i] = scale * static_cast<double>(finest.x[i]);
+      for (std::size_t i = begin; i < end; ++i) z[i] = size * static_cast<double>(single_z[i]);
     });
   };
 
-  // The first direction is a full multigrid solve, those that follow are single cycles. Each is made conjugate to the
-  // one before explicitly, since the preconditioner is not quite the same from step to step (Notay 2000).
-  double curvature = 0.0;
+  // Each direction is made conjugate to the one before explicitly, since the preconditioner is not quite linear in
+  // single precision (Notay 2000).
+  double curvature = 0.0, size = norm;
   for (int cycle = 1; cycle <= max_cycles; ++cycle) {
-    precondition(cycle == 1);
+    precondition(size);
     const double beta = cycle == 1 ? 0.0 : -dot(z, q) / curvature;
     for_each_chunk(p.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) p[i] = z[i] + beta * p[i];
@@ -273,7 +159,8 @@ PoissonSolution solve_screened_poisson(const SplineGrid& grid, const std::vector
       }
     });
     solution.cycles = cycle;
-    if (std::sqrt(dot(r, r)) <= tolerance * norm) break;
+    size = std::sqrt(dot(r, r));
+    if (size <= tolerance * norm) break;
   }
   // The recursion's residual drifts from the true one by rounding: report the true one.
   laplacian.apply(x, q);

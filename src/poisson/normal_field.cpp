@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The smoothed normal field of Poisson reconstruction (Kazhdan, Bolitho and Hoppe 2006), on nested regular grids: a
-// sample's depth is a real number, as in Kazhdan and Hoppe 2013, and the sample is shared between the grids above and
-// below.
+// The smoothed normal field of Poisson reconstruction (Kazhdan, Bolitho and Hoppe 2006). A sample's depth is a real
+// number, as in Kazhdan and Hoppe 2013, and the sample is shared between the levels above and below.
 #include "poisson/normal_field.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
@@ -11,81 +10,70 @@
 #include <algorithm>
 #include <cmath>
 
-#include "poisson/stencils.hpp"
+#include "poisson/bspline.hpp"
 
 namespace rhizodont {
 namespace {
 
-constexpr int smearing_levels = 4;  // cells are a multiple of 2^3, so that so many grids cover the same box
+constexpr std::size_t block_size = SplineLevel::block;
+using VectorField = std::array<LevelField, 3>;
 
-struct Splat {
-  SplinePosition at;
-  Eigen::Vector3d normal;  // times share over the cell's volume
-};
-
-/// How much of each sample goes to each level, as splats sorted by cell.
-std::vector<Splat> splats_of_level(const SplineGrid& grid, int level, const OrientedPoints& samples,
-                                   std::span<const double> shares, std::span<const double> depths) {
-  std::vector<Splat> splats;
-  const double volume = grid.spacing * grid.spacing * grid.spacing;
+/// Smears the samples' normals on one level.
+void splat(const SplineLevel& level, int number, const OrientedPoints& samples, std::span<const double> shares,
+           std::span<const double> depths, VectorField& field) {
+  const double volume = level.spacing * level.spacing * level.spacing;
   for (std::size_t s = 0; s < samples.points.size(); ++s) {
-    const double part = std::max(0.0, 1.0 - std::abs(depths[s] - level));
-    if (part > 0.0 && shares[s] > 0.0)
-      splats.push_back({locate(grid, samples.points[s]), -part * shares[s] / volume * samples.normals[s]});
+    const double part = std::max(0.0, 1.0 - std::abs(depths[s] - number));
+    if (!(part > 0.0 && shares[s] > 0.0)) continue;
+    const Eigen::Vector3d normal = -part * shares[s] / volume * samples.normals[s];
+    for_each_function(level, samples.points[s], [&](std::size_t f, double value) {
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        field[axis][level.first + f] += value * normal[static_cast<Eigen::Index>(axis)];
+    });
   }
-  return splats;
 }
 
-void add_splats(const SplineGrid& grid, const std::vector<Splat>& splats, Eigen::Index axis,
-                SplineField<double>& field) {
-  for (const Splat& splat : splats) {
-    const auto& [x, y, z] = splat.at.cell;
-    const double normal = splat.normal[axis];
-    for (int k = 0; k <= grid.degree; ++k)
-      for (int j = 0; j <= grid.degree; ++j) {
-        const double factor =
-            normal * splat.at.values[2][static_cast<std::size_t>(k)] * splat.at.values[1][static_cast<std::size_t>(j)];
-        double* line = field.data() + grid.index(x - grid.degree, y - grid.degree + j, z - grid.degree + k);
-        for (std::size_t i = 0; i <= static_cast<std::size_t>(grid.degree); ++i)
-          line[i] += factor * splat.at.values[0][i];
-      }
+/// out[512] = sum over the axes of int dB_i/dx_axis field_axis for the functions of one block.
+void divergence_block(const SplineLevel& level, std::size_t block, const VectorField& field, double* out) {
+  const SplineTables tables = spline_tables(level.degree);
+  std::array<double, largest_patch> patch;
+  std::fill_n(out, block_size, 0.0);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::array<std::array<double, 5>, 3> taps{tables.mass, tables.mass, tables.mass};
+    taps[axis] = tables.derivative;
+    for (double& tap : taps[0]) tap *= level.spacing * level.spacing;
+    gather_patch(level, field[axis].data() + level.first, block, patch.data());
+    add_block_product(level.degree, taps, patch.data(), out);
   }
 }
 
 }  // namespace
 
-double smearing_width(const SplineGrid& grid, double share, double samples_per_cell) {
-  const double widest = grid.spacing * (1 << (smearing_levels - 1));
-  return std::clamp(std::sqrt(samples_per_cell * share), grid.spacing, widest);
-}
-
-void add_normal_load(const SplineGrid& grid, const OrientedPoints& samples, std::span<const double> shares,
-                     double samples_per_cell, std::vector<double>& load) {
-  std::vector<double> depths(samples.points.size());
-  for (std::size_t s = 0; s < depths.size(); ++s)
-    depths[s] = std::log2(smearing_width(grid, shares[s], samples_per_cell) / grid.spacing);
-  std::vector<SplineGrid> grids{grid};
-  for (int level = 1; level < smearing_levels; ++level) grids.push_back(grids.back().coarser());
-  std::vector<std::vector<Splat>> splats(grids.size());
-  tbb::parallel_for(std::size_t{0}, grids.size(), [&](std::size_t level) {
-    splats[level] = splats_of_level(grids[level], static_cast<int>(level), samples, shares, depths);
-  });
-  std::size_t coarsest = grids.size() - 1;
-  while (coarsest > 0 && splats[coarsest].empty()) --coarsest;
-
-  const SplineTables tables = spline_tables(grid.degree);
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    SplineField<double> field, coarser;
-    for (std::size_t level = coarsest + 1; level-- > 0;) {
-      field.assign(grids[level].size(), 0.0);
-      if (level < coarsest) add_refined(grids[level], coarser, field);
-      add_splats(grids[level], splats[level], static_cast<Eigen::Index>(axis), field);
-      std::swap(field, coarser);
-    }
-    std::array<std::array<double, 5>, 3> taps{tables.mass, tables.mass, tables.mass};
-    taps[axis] = tables.derivative;
-    add_tensor_product(grid, taps, grid.spacing * grid.spacing, coarser, load);
+LevelField normal_load(const std::vector<SplineLevel>& levels, const OrientedPoints& samples,
+                       std::span<const double> shares, std::span<const double> depths) {
+  VectorField own, sums;
+  own.fill(LevelField(field_size(levels), 0.0));
+  tbb::parallel_for(std::size_t{0}, levels.size(),
+                    [&](std::size_t l) { splat(levels[l], static_cast<int>(l), samples, shares, depths, own); });
+  tbb::parallel_for(std::size_t{0}, std::size_t{3},
+                    [&](std::size_t axis) { sums[axis] = accumulated(levels, own[axis]); });
+  LevelField load(field_size(levels)), outer(field_size(levels));
+  for (std::size_t l = levels.size(); l-- > 0;) {
+    const SplineLevel& level = levels[l];
+    tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
+      std::array<double, block_size> of_finer{}, of_own, of_all;
+      const std::size_t begin = level.first + b * block_size;
+      if (l + 1 < levels.size())
+        restrict_block(level, b, levels[l + 1], outer.data() + levels[l + 1].first, of_finer.data());
+      divergence_block(level, b, own, of_own.data());
+      divergence_block(level, b, sums, of_all.data());
+      for (std::size_t i = 0; i < block_size; ++i) {
+        outer[begin + i] = of_finer[i] + of_own[i];
+        load[begin + i] = level.active[b * block_size + i] ? of_finer[i] + of_all[i] : 0.0;
+      }
+    });
   }
+  return load;
 }
 
 }  // namespace rhizodont

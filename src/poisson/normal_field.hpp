@@ -5,19 +5,17 @@
 #include <span>
 #include <vector>
 
-#include "poisson/spline_grid.hpp"
+#include "poisson/multigrid.hpp"
 #include "rhizodont/mesh.hpp"
 
 namespace rhizodont {
 
-/// Adds to `load`, for each function B_i of the grid inside the box, int grad B_i . V. V is minus the samples' normals,
-/// each spread over its share of the surface and smeared by a spline of the grid, or of a coarser one where the
-/// samples are so sparse that there would be fewer than `samples_per_cell`.
-/// Preconditions: unit normals, samples inside the box, the number of cells a multiple of 8 along each axis.
-void add_normal_load(const SplineGrid& grid, const OrientedPoints& samples, std::span<const double> shares,
-                     double samples_per_cell, std::vector<double>& load);
-
-/// The width (mm) over which the normal of a sample with this share of the surface is smeared.
-double smearing_width(const SplineGrid& grid, double share, double samples_per_cell);
+/// Load of the screened Poisson problem: for each active function B_i of each level int grad B_i . V. V is minus the
+/// samples' normals, each spread over its share of the surface and smeared by a spline as wide as the sample's depth
+/// says: a depth between two levels means that both have a part in it.
+/// \param depths  per sample, from 0 = coarsest level to levels.size() - 1. Preconditions: unit normals; around each
+///                sample the level ceil(depth) is built
+LevelField normal_load(const std::vector<SplineLevel>& levels, const OrientedPoints& samples,
+                       std::span<const double> shares, std::span<const double> depths);
 
 }  // namespace rhizodont

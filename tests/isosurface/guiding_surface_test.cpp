@@ -75,7 +75,7 @@ TEST(GuidingSurface, TakesAllSamplesAsSeedsIfThereAreNone) {
 
 TEST(GuidingSurface, SaysThatATorusIsNotATooth) {
   std::mt19937 random(1);
-  const OrientedPoints samples = shapes::torus(3000, 4.0, 1.5, random);
+  const OrientedPoints samples = shapes::torus(3000, 4.5, 1.9, random);
   GuidingSurfaceOptions options;
   options.smearings = 1;
   EXPECT_THROW(guiding_surface(samples, {}, {}, options), NoResultError);

@@ -40,7 +40,7 @@ TEST_P(IndicatorOfDegree, IsOneInsideZeroOutsideAndMeetsTheSphere) {
   EXPECT_NEAR(chi.value(centre), 1.0, 0.05);
   EXPECT_NEAR(chi.value(centre + Point(0.0, 0.0, 4.9)), 0.0, 0.05);
   EXPECT_NEAR(chi.iso_value(), 0.5, 0.02);
-  EXPECT_LE(chi.statistics().relative_residual, 1.01e-6);
+  EXPECT_LE(chi.statistics().relative_residual, 1.01 * options().tolerance);
   EXPECT_LE(chi.statistics().cycles, 12);
   EXPECT_NEAR(chi.statistics().sampled_area, 64.0 * std::numbers::pi, 0.08 * 64.0 * std::numbers::pi);
   for (std::size_t i = 0; i < samples.points.size(); i += 7) {

@@ -1,18 +1,18 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// The pieces of the solver, each against an evaluation that shares nothing with it: quadrature, dense matrices, closed
-// forms.
+// The pieces of the solver, each against an evaluation that shares nothing with it: quadrature, closed forms.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <random>
+#include <set>
 
 #include "poisson/bspline.hpp"
+#include "poisson/field_sample.hpp"
 #include "poisson/multigrid.hpp"
 #include "poisson/normal_field.hpp"
 #include "poisson/shapes.hpp"
-#include "poisson/stencils.hpp"
+#include "poisson/spline_level.hpp"
 #include "poisson/surface_shares.hpp"
 
 namespace rhizodont {
@@ -42,85 +42,89 @@ double integral(const Function& f) {
   return sum;
 }
 
-/// Matrix of one axis: entry (i, j) = integral of f(x - i) g(x - j).
-template <class F, class G>
-Eigen::MatrixXd axis_matrix(int count, const F& f, const G& g) {
-  Eigen::MatrixXd matrix(count, count);
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j < count; ++j) matrix(i, j) = integral([&](double x) { return f(x) * g(x - (j - i)); });
-  return matrix;
-}
-
-SplineGrid small_grid(int degree) {
-  SplineGrid grid;
-  grid.degree = degree;
-  grid.cells = {8, 10, 12};
-  grid.origin = Point(-1.0, 2.0, 0.5);
-  grid.spacing = 0.3;
-  return grid;
-}
-
-std::vector<std::size_t> positions(const SplineGrid& grid) {
-  std::vector<std::size_t> all;
-  for (int z = 0; z < grid.functions(2); ++z)
-    for (int y = 0; y < grid.functions(1); ++y)
-      for (int x = 0; x < grid.functions(0); ++x) all.push_back(grid.index(x, y, z));
-  return all;
-}
-
-std::vector<ScreeningSample> random_screening(const SplineGrid& grid, int count, std::mt19937& random) {
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<ScreeningSample> samples;
-  for (int s = 0; s < count; ++s) {
-    const Eigen::Array3d at(grid.cells[0] * uniform(random), grid.cells[1] * uniform(random),
-                            grid.cells[2] * uniform(random));
-    samples.push_back({grid.origin + (grid.spacing * at).matrix(), uniform(random)});
-  }
-  return samples;
-}
-
-/// The operator as a dense matrix, from quadrature and the truncated powers.
-Eigen::MatrixXd dense_operator(const SplineGrid& grid, const std::vector<ScreeningSample>& samples) {
-  const int p = grid.degree;
-  const auto value = [p](double x) { return spline(p, x); };
-  const auto slope = [p](double x) { return spline_slope(p, x); };
-  std::array<Eigen::MatrixXd, 3> mass, stiffness;
-  for (int axis = 0; axis < 3; ++axis) {
-    mass[static_cast<std::size_t>(axis)] = axis_matrix(grid.functions(axis), value, value);
-    stiffness[static_cast<std::size_t>(axis)] = axis_matrix(grid.functions(axis), slope, slope);
-  }
-  const int nx = grid.functions(0), ny = grid.functions(1), count = nx * ny * grid.functions(2);
-  const auto split = [&](int i) { return std::array<int, 3>{i % nx, i / nx % ny, i / (nx * ny)}; };
-  Eigen::MatrixXd matrix(count, count);
-  for (int i = 0; i < count; ++i)
-    for (int j = 0; j < count; ++j) {
-      const auto a = split(i), b = split(j);
-      const auto m = [&](std::size_t axis) { return mass[axis](a[axis], b[axis]); };
-      const auto k = [&](std::size_t axis) { return stiffness[axis](a[axis], b[axis]); };
-      matrix(i, j) = grid.spacing * (k(0) * m(1) * m(2) + m(0) * k(1) * m(2) + m(0) * m(1) * k(2));
+/// Levels around a small cluster of samples in one corner of a box, the coarsest complete, two more only near the
+/// samples.
+struct Cluster {
+  explicit Cluster(int degree, std::mt19937& random) {
+    LevelOptions options;
+    options.degree = degree;
+    options.spacing = 0.5;
+    options.margin = 1.5;
+    options.complete_cells = 4;
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    std::vector<LevelSample> reach{{Point(0.0, 0.0, 0.0), 0}, {Point(4.0, 4.0, 4.0), 0}};
+    for (int i = 0; i < 40; ++i) {
+      const Point p(1.5 * uniform(random), 2.0 * uniform(random), uniform(random));
+      reach.push_back({p, i % 4 == 0 ? 1 : 2});
     }
-  for (const ScreeningSample& sample : samples) {
-    const Eigen::Vector3d at = (sample.position - grid.origin) / grid.spacing;
-    Eigen::VectorXd values(count);
-    for (int i = 0; i < count; ++i) {
-      const auto a = split(i);
-      values[i] = spline(p, at[0] - a[0]) * spline(p, at[1] - a[1]) * spline(p, at[2] - a[2]);
+    Eigen::AlignedBox3d box;
+    for (const LevelSample& sample : reach) box.extend(sample.position);
+    levels = build_levels(lay_out_levels(box, options), reach, options);
+    samples.resize(levels.size());
+    for (const LevelSample& sample : reach) {
+      std::size_t l = levels.size() - 1;
+      const auto touches = [&] {
+        bool any = false;
+        for_each_function(levels[l], sample.position, [&](std::size_t f, double) { any = any || levels[l].active[f]; });
+        return any;
+      };
+      while (l > 0 && !touches()) --l;
+      samples[l].push_back({sample.position, uniform(random)});
     }
-    matrix += sample.weight * values * values.transpose();
   }
-  return matrix;
+
+  std::vector<SplineLevel> levels;
+  std::vector<std::vector<ScreeningSample>> samples;
+};
+
+LevelField random_field(const std::vector<SplineLevel>& levels, std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  LevelField field(field_size(levels), 0.0);
+  for (const SplineLevel& level : levels)
+    for (std::size_t i = 0; i < level.size(); ++i)
+      if (level.active[i]) field[level.first + i] = normal(random);
+  return field;
+}
+
+/// Value and gradient of the function that the coefficients stand for, level by level from the truncated powers.
+FieldSample function_at(const std::vector<SplineLevel>& levels, const LevelField& field, const Point& p) {
+  FieldSample sample;
+  for (const SplineLevel& level : levels) {
+    const Eigen::Vector3d at = (p - level.origin) / level.spacing;
+    const std::array<int, 3> cell = cell_of(level, p);
+    const int count = level.degree + 1;
+    std::array<std::array<double, 3>, 3> value{}, slope{};
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      for (std::size_t k = 0; k <= static_cast<std::size_t>(level.degree); ++k) {
+        const double t = at[static_cast<Eigen::Index>(axis)] - cell[axis] + level.degree - static_cast<double>(k);
+        value[axis][k] = spline(level.degree, t);
+        slope[axis][k] = spline_slope(level.degree, t);
+      }
+    for (int n = 0; n < count * count * count; ++n) {
+      const std::array<int, 3> k{n % count, n / count % count, n / (count * count)};
+      const std::ptrdiff_t f =
+          level.index(cell[0] - level.degree + k[0], cell[1] - level.degree + k[1], cell[2] - level.degree + k[2]);
+      if (f < 0) continue;
+      const double c = field[level.first + static_cast<std::size_t>(f)];
+      const auto v = [&](std::size_t axis) { return value[axis][static_cast<std::size_t>(k[axis])]; };
+      const auto s = [&](std::size_t axis) { return slope[axis][static_cast<std::size_t>(k[axis])]; };
+      sample.value += c * v(0) * v(1) * v(2);
+      sample.gradient +=
+          c / level.spacing * Eigen::Vector3d(s(0) * v(1) * v(2), v(0) * s(1) * v(2), v(0) * v(1) * s(2));
+    }
+  }
+  return sample;
+}
+
+double inner(const LevelField& a, const LevelField& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
 }
 
 class SolverOfDegree : public testing::TestWithParam<int> {
  protected:
-  std::mt19937 random_{11};
-
-  std::vector<double> random_field(const SplineGrid& grid) {
-    std::normal_distribution<double> normal;
-    std::vector<double> field(grid.size(), 0.0);
-    for (const std::size_t i : positions(grid)) field[i] = normal(random_);
-    return field;
-  }
+  std::mt19937 random_{7};
 };
 
 TEST_P(SolverOfDegree, TablesAreTheIntegrals) {
@@ -154,143 +158,187 @@ TEST_P(SolverOfDegree, ValuesOnACellAreTheSplines) {
   }
 }
 
-TEST_P(SolverOfDegree, OperatorIsTheDenseMatrix) {
-  const SplineGrid grid = small_grid(GetParam());
-  const auto samples = random_screening(grid, 40, random_);
-  const Eigen::MatrixXd matrix = dense_operator(grid, samples);
-  const std::vector<double> u = random_field(grid);
-  std::vector<double> out(grid.size(), 0.0);
-  apply_screened_laplacian(grid, samples, u, out);
-  const auto at = positions(grid);
-  Eigen::VectorXd x(matrix.rows()), y(matrix.rows());
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    x[static_cast<Eigen::Index>(i)] = u[at[i]];
-    y[static_cast<Eigen::Index>(i)] = out[at[i]];
-  }
-  EXPECT_LT((matrix * x - y).norm(), 1e-12 * y.norm());
-  EXPECT_LE(dense_operator(grid, {}).selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff(),
-            LaplaceStencil<double>(grid).largest_eigenvalue());
+/// The bilinear form by Gauss's rule on the finest cells.
+TEST_P(SolverOfDegree, OperatorIsTheBilinearForm) {
+  const Cluster cluster(GetParam(), random_);
+  const auto& levels = cluster.levels;
+  ASSERT_EQ(levels.size(), 3U);
+  EXPECT_FALSE(levels.back().complete);
+  const LevelField u = random_field(levels, random_), v = random_field(levels, random_);
+  const SplineLevel& finest = levels.back();
+  const std::array<double, 3> node{0.5 - 0.5 * std::sqrt(0.6), 0.5, 0.5 + 0.5 * std::sqrt(0.6)};
+  const std::array<double, 3> weight{5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  double form = 0.0;
+  for (int z = 0; z < finest.cells[2]; ++z)
+    for (int y = 0; y < finest.cells[1]; ++y)
+      for (int x = 0; x < finest.cells[0]; ++x)
+        for (std::size_t g = 0; g < 27; ++g) {
+          const std::size_t i = g % 3, j = g / 3 % 3, k = g / 9;
+          const Point p = finest.origin + finest.spacing * Eigen::Vector3d(x + node[i], y + node[j], z + node[k]);
+          form += weight[i] * weight[j] * weight[k] * std::pow(finest.spacing, 3) *
+                  function_at(levels, u, p).gradient.dot(function_at(levels, v, p).gradient);
+        }
+  for (const auto& samples : cluster.samples)
+    for (const ScreeningSample& s : samples)
+      form += s.weight * function_at(levels, u, s.position).value * function_at(levels, v, s.position).value;
+  LevelField product(u.size());
+  ScreenedLaplacian(levels, cluster.samples).apply(u, product);
+  EXPECT_NEAR(inner(product, v), form, 1e-9 * std::abs(form) + 1e-9);
 }
 
-TEST_P(SolverOfDegree, RestrictionIsTheTransposeOfProlongation) {
-  const SplineGrid grid = small_grid(GetParam());
-  const SplineGrid parent = grid.coarser();
-  const std::vector<double> fine = random_field(grid), coarse = random_field(parent);
-  std::vector<double> restricted(parent.size(), 0.0), prolonged(grid.size(), 0.0);
-  restrict_field(grid, fine, restricted);
-  prolong_add(grid, coarse, prolonged);
-  double a = 0.0, b = 0.0;
-  for (std::size_t i = 0; i < coarse.size(); ++i) a += coarse[i] * restricted[i];
-  for (std::size_t i = 0; i < fine.size(); ++i) b += fine[i] * prolonged[i];
-  EXPECT_NEAR(a, b, 1e-12 * (std::abs(a) + 1.0));
+TEST_P(SolverOfDegree, ScreeningLoadTestsWithValues) {
+  const Cluster cluster(GetParam(), random_);
+  const LevelField v = random_field(cluster.levels, random_);
+  LevelField load(v.size(), 0.0);
+  add_screening_load(cluster.levels, cluster.samples, 0.7, load);
+  double expected = 0.0;
+  for (const auto& samples : cluster.samples)
+    for (const ScreeningSample& s : samples)
+      expected += 0.7 * s.weight * function_at(cluster.levels, v, s.position).value;
+  EXPECT_NEAR(inner(load, v), expected, 1e-10);
 }
 
-TEST_P(SolverOfDegree, CoarseOperatorIsTheFineOneSeenFromTheCoarseGrid) {
-  const SplineGrid grid = small_grid(GetParam());
-  const SplineGrid parent = grid.coarser();
-  const std::vector<double> coarse = random_field(parent);
-  std::vector<double> prolonged(grid.size(), 0.0), product(grid.size(), 0.0), back(parent.size(), 0.0),
-      direct(parent.size(), 0.0);
-  prolong_add(grid, coarse, prolonged);
-  apply_screened_laplacian(grid, {}, prolonged, product);
-  restrict_field(grid, product, back);
-  apply_screened_laplacian(parent, {}, coarse, direct);
-  for (const std::size_t i : positions(parent)) EXPECT_NEAR(back[i], direct[i], 1e-12);
+TEST_P(SolverOfDegree, AccumulatedLevelsAreTheFunction) {
+  const Cluster cluster(GetParam(), random_);
+  const LevelField u = random_field(cluster.levels, random_);
+  const LevelField sums = accumulated(cluster.levels, u);
+  // The finest level alone, from its sums, where samples reach so deep.
+  const std::vector<SplineLevel> finest{cluster.levels.back()};
+  for (const ScreeningSample& s : cluster.samples.back())
+    EXPECT_NEAR(function_at(finest, sums, s.position).value, function_at(cluster.levels, u, s.position).value, 1e-12);
 }
 
-TEST_P(SolverOfDegree, ReachesTheToleranceByADenseResidual) {
-  const SplineGrid grid = small_grid(GetParam());
-  const auto samples = random_screening(grid, 60, random_);
-  const std::vector<double> load = random_field(grid);
-  const Eigen::MatrixXd matrix = dense_operator(grid, samples);
-  const auto at = positions(grid);
-  for (const double tolerance : {1e-4, 1e-8, 1e-11}) {
-    const PoissonSolution solution = solve_screened_poisson(grid, samples, load, tolerance, 60);
-    Eigen::VectorXd x(matrix.rows()), b(matrix.rows());
-    for (std::size_t i = 0; i < at.size(); ++i) {
-      x[static_cast<Eigen::Index>(i)] = solution.coefficients[at[i]];
-      b[static_cast<Eigen::Index>(i)] = load[at[i]];
+TEST_P(SolverOfDegree, RecoversAFunctionToTheTolerance) {
+  const Cluster cluster(GetParam(), random_);
+  const LevelField u = random_field(cluster.levels, random_);
+  LevelField load(u.size()), product(u.size());
+  ScreenedLaplacian laplacian(cluster.levels, cluster.samples);
+  laplacian.apply(u, load);
+  const PoissonSolution solution = solve_screened_poisson(cluster.levels, cluster.samples, load, 1e-11, 100);
+  EXPECT_LE(solution.relative_residual, 1.01e-11);
+  laplacian.apply(solution.coefficients, product);
+  double residual = 0.0;
+  for (std::size_t i = 0; i < load.size(); ++i) residual += std::pow(load[i] - product[i], 2);
+  EXPECT_NEAR(std::sqrt(residual / inner(load, load)), solution.relative_residual, 1e-14);
+  // Coefficients are not unique, the function is.
+  for (const auto& samples : cluster.samples)
+    for (const ScreeningSample& s : samples)
+      EXPECT_NEAR(function_at(cluster.levels, solution.coefficients, s.position).value,
+                  function_at(cluster.levels, u, s.position).value, 1e-7);
+}
+
+TEST_P(SolverOfDegree, CyclesDoNotGrowWithFinerLevels) {
+  const OrientedPoints sphere = shapes::sphere(4000, 4.0);
+  for (const double spacing : {0.8, 0.4, 0.2}) {
+    LevelOptions options;
+    options.degree = GetParam();
+    options.spacing = spacing;
+    options.complete_cells = 16;
+    Eigen::AlignedBox3d box;
+    for (const Point& p : sphere.points) box.extend(p);
+    const LevelLayout layout = lay_out_levels(box, options);
+    std::vector<LevelSample> reach;
+    std::vector<std::vector<ScreeningSample>> samples(static_cast<std::size_t>(layout.count));
+    for (const Point& p : sphere.points) {
+      reach.push_back({p, layout.count - 1});
+      samples.back().push_back({p, 0.2});
     }
-    EXPECT_LE((b - matrix * x).norm(), 1.02 * tolerance * b.norm());
-    EXPECT_NEAR(solution.relative_residual, (b - matrix * x).norm() / b.norm(), 0.02 * tolerance);
+    const auto levels = build_levels(layout, reach, options);
+    LevelField load(field_size(levels));
+    ScreenedLaplacian(levels, samples).apply(random_field(levels, random_), load);
+    EXPECT_LE(solve_screened_poisson(levels, samples, load, 1e-6, 100).cycles, GetParam() == 1 ? 12 : 40) << spacing;
   }
-}
-
-TEST_P(SolverOfDegree, RecoversAManufacturedSolutionInFewCyclesOnALargerGrid) {
-  SplineGrid grid;
-  grid.degree = GetParam();
-  grid.cells = {32, 40, 64};
-  grid.spacing = 0.2;
-  auto samples = random_screening(grid, 3000, random_);
-  for (ScreeningSample& sample : samples) sample.weight *= 0.5;
-  const std::vector<double> expected = random_field(grid);
-  std::vector<double> load(grid.size(), 0.0);
-  apply_screened_laplacian(grid, samples, expected, load);
-  const PoissonSolution solution = solve_screened_poisson(grid, samples, load, 1e-10, 40);
-  EXPECT_LE(solution.relative_residual, 1e-10);
-  EXPECT_LE(solution.cycles, 25);
-  double error = 0.0;
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    error = std::max(error, std::abs(expected[i] - solution.coefficients[i]));
-  EXPECT_LT(error, 1e-6);
 }
 
 /// The load tested with a linear function gives minus share times slope along the normal, however wide the smearing.
 TEST_P(SolverOfDegree, NormalLoadIsExactOnLinearFunctions) {
-  SplineGrid grid;
-  grid.degree = GetParam();
-  grid.cells = {64, 64, 64};
-  grid.origin = Point(-6.4, -6.4, -6.4);
-  grid.spacing = 0.2;
+  LevelOptions options;
+  options.degree = GetParam();
+  options.complete_cells = 1000;
+  const Eigen::AlignedBox3d box(Point(-5.0, -5.0, -5.0), Point(5.0, 5.0, 5.0));
+  const auto levels = build_levels(lay_out_levels(box, options), {}, options);
   const Eigen::Vector3d slope(0.7, -1.3, 0.4);
   OrientedPoints samples;
   samples.points = {Point(0.13, -0.21, 0.34)};
   samples.normals = {Eigen::Vector3d(2.0, 1.0, -2.0) / 3.0};
-  for (const double share : {0.01, 0.05, 0.3, 1.0}) {
-    std::vector<double> load(grid.size(), 0.0);
-    add_normal_load(grid, samples, std::vector<double>{share}, 1.5, load);
-    double tested = 0.0;
-    for (int z = 0; z < grid.functions(2); ++z)
-      for (int y = 0; y < grid.functions(1); ++y)
-        for (int x = 0; x < grid.functions(0); ++x) {
-          // The coefficients of a linear function are its values at the middles of the supports.
-          const Eigen::Vector3d middle =
-              grid.origin +
-              grid.spacing * (Eigen::Vector3d(x, y, z) + Eigen::Vector3d::Constant(0.5 * (grid.degree + 1)));
-          tested += slope.dot(middle) * load[grid.index(x, y, z)];
-        }
-    EXPECT_NEAR(tested, -share * slope.dot(samples.normals[0]), 1e-10) << share;
+  const double finest = static_cast<double>(levels.size()) - 1.0, share = 0.3;
+  for (const double depth : {finest, finest - 0.4, finest - 1.0, finest - 1.7}) {
+    const LevelField load = normal_load(levels, samples, std::vector<double>{share}, std::vector<double>{depth});
+    for (std::size_t l = levels.size() - 2; l < levels.size(); ++l) {
+      const SplineLevel& level = levels[l];
+      double tested = 0.0;
+      for (int z = 0; z < level.functions(2); ++z)
+        for (int y = 0; y < level.functions(1); ++y)
+          for (int x = 0; x < level.functions(0); ++x) {
+            // The coefficients of a linear function are its values at the middles of the supports.
+            const Eigen::Vector3d middle =
+                level.origin +
+                level.spacing * (Eigen::Vector3d(x, y, z) + Eigen::Vector3d::Constant(0.5 * (level.degree + 1)));
+            tested += slope.dot(middle) * load[level.first + static_cast<std::size_t>(level.index(x, y, z))];
+          }
+      EXPECT_NEAR(tested, -share * slope.dot(samples.normals[0]), 1e-10) << depth << ' ' << l;
+    }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Degrees, SolverOfDegree, testing::Values(1, 2));
 
-TEST(SmearingWidth, GrowsWithTheShareBetweenItsBounds) {
-  SplineGrid grid;
-  grid.spacing = 0.2;
-  EXPECT_DOUBLE_EQ(smearing_width(grid, 1e-4, 1.5), 0.2);
-  EXPECT_DOUBLE_EQ(smearing_width(grid, 0.24, 1.5), 0.6);
-  EXPECT_DOUBLE_EQ(smearing_width(grid, 100.0, 1.5), 1.6);
+TEST(SplineLevels, StoreTheParentsOfAllTheyStore) {
+  std::mt19937 random(8);
+  const Cluster cluster(2, random);
+  for (std::size_t l = 1; l < cluster.levels.size(); ++l)
+    for (const auto& [x, y, z] : cluster.levels[l].blocks)
+      for (int n = 0; n < 125; ++n) {
+        const std::array<int, 3> f{4 * x - 1 + n % 5, 4 * y - 1 + n / 5 % 5, 4 * z - 1 + n / 25};
+        bool in_box = true;
+        for (int axis = 0; axis < 3; ++axis)
+          in_box = in_box && f[static_cast<std::size_t>(axis)] >= 0 &&
+                   f[static_cast<std::size_t>(axis)] < cluster.levels[l - 1].functions(axis);
+        if (in_box) {
+          EXPECT_GE(cluster.levels[l - 1].index(f[0], f[1], f[2]), 0);
+        }
+      }
+}
+
+TEST(SplineLevels, GrowWithAreaOverSquaredSpacing) {
+  const OrientedPoints sphere = shapes::sphere(60000, 4.0);
+  Eigen::AlignedBox3d box;
+  for (const Point& p : sphere.points) box.extend(p);
+  std::vector<double> counts;
+  for (const double spacing : {0.4, 0.2, 0.1}) {
+    LevelOptions options;
+    options.spacing = spacing;
+    const LevelLayout layout = lay_out_levels(box, options);
+    std::vector<LevelSample> reach;
+    for (const Point& p : sphere.points) reach.push_back({p, layout.count - 1});
+    const auto levels = build_levels(layout, reach, options);
+    counts.push_back(static_cast<double>(levels.back().blocks.size()));
+  }
+  EXPECT_LT(counts[2] / counts[1], 4.8) << "8 if it grew with volume";
 }
 
 TEST(MergeSamples, KeepsWeightAndCentre) {
-  const SplineGrid grid = small_grid(2);
   std::mt19937 random(3);
-  const auto samples = random_screening(grid, 500, random);
-  const auto merged = merge_samples(grid, samples);
-  EXPECT_LE(merged.size(), 8U * 10U * 12U);
+  const Cluster cluster(2, random);
+  std::uniform_real_distribution<double> uniform(0.0, 4.0);
+  std::vector<ScreeningSample> samples;
+  for (int s = 0; s < 500; ++s) samples.push_back({Point(uniform(random), uniform(random), uniform(random)), 0.1 + s});
+  const auto merged = merge_samples(cluster.levels[1], samples);
+  EXPECT_LT(merged.size(), samples.size());
   double weight = 0.0, merged_weight = 0.0;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero(), merged_centre = Eigen::Vector3d::Zero();
   for (const auto& s : samples) {
     weight += s.weight;
     centre += s.weight * s.position;
   }
+  std::set<std::array<int, 3>> cells;
   for (const auto& s : merged) {
     merged_weight += s.weight;
     merged_centre += s.weight * s.position;
+    EXPECT_TRUE(cells.insert(cell_of(cluster.levels[1], s.position)).second) << "one per cell";
   }
-  EXPECT_NEAR(merged_weight, weight, 1e-10);
-  EXPECT_LT((merged_centre - centre).norm(), 1e-10);
+  EXPECT_NEAR(merged_weight, weight, 1e-8);
+  EXPECT_LT((merged_centre - centre).norm(), 1e-8);
 }
 
 TEST(SurfaceShares, SumToTheAreaForEvenAndRandomSamples) {
