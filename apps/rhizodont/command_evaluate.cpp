@@ -62,7 +62,7 @@ void clear_line(const EvaluationProgress& progress) {
 }
 
 void print_header() {
-  constexpr const char* columns = "{:<5}{:<10}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>10}{:>8}{:>10}\n";
+  constexpr const char* columns = "{:<9}{:<10}{:>8}{:>8}{:>8}{:>9}{:>8}{:>8}{:>8}{:>10}{:>8}{:>10}\n";
   fmt::print(columns, "", "", "length", "apex", "matched", "root", "root F", "root", "axis", "Chamfer", "F at",
              "roots");
   fmt::print(columns, "FDI", "by", "error", "off", "apices", "Chamfer", "0.5 mm", "H 95 %", "angle", "L2 x1000", "1 %",
@@ -71,11 +71,11 @@ void print_header() {
 
 void print_row(int fdi, const std::string& predictor, const CaseOutcome& outcome) {
   if (!outcome.figures) {
-    fmt::print("{:<5}{:<10}  no figures: {}\n", fdi, predictor, outcome.failure);
+    fmt::print("{:<9}{:<10}  no figures: {}\n", fdi, predictor, outcome.failure);
     return;
   }
   const RootFigures& f = *outcome.figures;
-  fmt::print("{:<5}{:<10}{:>+8.2f}{:>8.2f}{:>8.2f}{:>9.3f}{:>8.3f}{:>8.2f}{:>8.1f}{:>10.3f}{:>8.3f}{:>10}\n", fdi,
+  fmt::print("{:<9}{:<10}{:>+8.2f}{:>8.2f}{:>8.2f}{:>9.3f}{:>8.3f}{:>8.2f}{:>8.1f}{:>10.3f}{:>8.3f}{:>10}\n", fdi,
              predictor, f.root_length_error_mm, f.apex_distance_mm, f.matched_apex_distance_mm, f.root_chamfer_mm,
              f.root_f_score, f.root_hausdorff95_mm, f.root_axis_angle_deg, f.chamfer_l2_e3, f.f_score,
              fmt::format("{}:{}", f.true_apices.size(), f.predicted_apices.size()));
@@ -83,10 +83,10 @@ void print_row(int fdi, const std::string& predictor, const CaseOutcome& outcome
 
 void print_mean(const char* name, const std::string& predictor, const MeanFigures& m) {
   if (m.teeth == 0) {
-    fmt::print("{:<5}{:<10}  no tooth\n", name, predictor);
+    fmt::print("{:<9}{:<10}  no tooth\n", name, predictor);
     return;
   }
-  fmt::print("{:<5}{:<10}{:>8.2f}{:>8.2f}{:>8.2f}{:>9.3f}{:>8.3f}{:>8.2f}{:>8.1f}{:>10.3f}{:>8.3f}{:>10}\n", name,
+  fmt::print("{:<9}{:<10}{:>8.2f}{:>8.2f}{:>8.2f}{:>9.3f}{:>8.3f}{:>8.2f}{:>8.1f}{:>10.3f}{:>8.3f}{:>10}\n", name,
              predictor, m.root_length_abs_error_mm, m.apex_distance_mm, m.matched_apex_distance_mm, m.root_chamfer_mm,
              m.root_f_score, m.root_hausdorff95_mm, m.root_axis_angle_deg, m.chamfer_l2_e3, m.f_score,
              fmt::format("{}/{}", m.right_root_counts, m.teeth));

@@ -22,7 +22,7 @@ namespace {
 
 struct SynthCommand {
   std::string data;
-  int fdi = 0;
+  std::vector<int> fdi;
   int count = 1;
   std::uint64_t seed = 0;
   std::string output;
@@ -84,42 +84,51 @@ void write_atlas(const SynthCommand& command, const ToothFamilies& families) {
   fmt::print("{}\n", command.atlas);
 }
 
-void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
-  const std::filesystem::path folder = command.output;
-  std::filesystem::create_directories(folder);
-  const bool right_side = is_right_side(command.fdi);
-  std::vector<TriangleMesh> drawn;
+/// Teeth made so far, for the sheet.
+struct Drawing {
+  std::vector<TriangleMesh> meshes;
   std::vector<std::vector<Colour>> colours;
-  for (int i = 0; i < command.count; ++i) {
-    const std::uint64_t seed = command.seed + static_cast<std::uint64_t>(i);
-    const SyntheticTooth tooth = generate_tooth(families, tooth_type_of_fdi(command.fdi), seed);
-    const CroppedCrown cropped = crop(command, tooth, seed);
-    const MeshFile file = tooth_file(tooth, cropped.line, right_side);
-    const std::string name = fmt::format("{}_{}.ply", command.fdi, seed);
-    save_mesh(folder / ("tooth_" + name), file);
-    fmt::print("{}: root {:.1f} mm, crown {:.1f} mm, {} root{}\n", (folder / ("tooth_" + name)).string(),
-               tooth.root_length, tooth.crown_height, tooth.apices.size(), tooth.apices.size() == 1 ? "" : "s");
-    if (command.crowns) {
-      MeshFile crown;
-      crown.mesh = right_side ? mirrored(cropped.mesh) : cropped.mesh;
-      if (command.edge_mm > 0) crown.mesh = scanner_mesh(crown.mesh, command.edge_mm, command.noise_mm, seed);
-      for (Point& p : crown.mesh.vertices) p = nearest_float(p);
-      crown.comments = file.comments;
-      save_mesh(folder / fmt::format("crown_{}_{}.{}", command.fdi, seed, command.crown_format), crown);
-      drawn.push_back(crown.mesh);
-      colours.push_back({plain_colour()});
-    }
-    drawn.push_back(file.mesh);
-    colours.push_back(colours_by_source(file.mesh, file.vertex_attributes.at(source_attribute).values));
+};
+
+void write_tooth(const SynthCommand& command, const ToothFamilies& families, int fdi, std::uint64_t seed,
+                 Drawing& drawing) {
+  const std::filesystem::path folder = command.output;
+  const bool right_side = is_right_side(fdi);
+  const SyntheticTooth tooth = generate_tooth(families, tooth_type_of_fdi(fdi), seed);
+  const CroppedCrown cropped = crop(command, tooth, seed);
+  const MeshFile file = tooth_file(tooth, cropped.line, right_side);
+  const auto tooth_name = folder / fmt::format("tooth_{}_{}.ply", fdi, seed);
+  save_mesh(tooth_name, file);
+  fmt::print("{}: root {:.1f} mm, crown {:.1f} mm, {} root{}\n", tooth_name.string(), tooth.root_length,
+             tooth.crown_height, tooth.apices.size(), tooth.apices.size() == 1 ? "" : "s");
+  if (command.crowns) {
+    MeshFile crown;
+    crown.mesh = right_side ? mirrored(cropped.mesh) : cropped.mesh;
+    if (command.edge_mm > 0) crown.mesh = scanner_mesh(crown.mesh, command.edge_mm, command.noise_mm, seed);
+    for (Point& p : crown.mesh.vertices) p = nearest_float(p);
+    crown.comments = file.comments;
+    save_mesh(folder / fmt::format("crown_{}_{}.{}", fdi, seed, command.crown_format), crown);
+    drawing.meshes.push_back(crown.mesh);
+    drawing.colours.push_back({plain_colour()});
   }
+  drawing.meshes.push_back(file.mesh);
+  drawing.colours.push_back(colours_by_source(file.mesh, file.vertex_attributes.at(source_attribute).values));
+}
+
+void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
+  std::filesystem::create_directories(command.output);
+  Drawing drawing;
+  for (const int fdi : command.fdi)
+    for (int i = 0; i < command.count; ++i)
+      write_tooth(command, families, fdi, command.seed + static_cast<std::uint64_t>(i), drawing);
   if (command.sheet.empty()) return;
   RenderOptions options;
   options.width = 240;
   options.height = 320;
   options.views = {"front", "right", "back", "left", "top", "bottom"};
   std::vector<RenderItem> items;
-  for (std::size_t i = 0; i < drawn.size(); ++i)
-    items.push_back({&drawn[i], colours[i], Eigen::Vector3d::UnitZ().eval()});
+  for (std::size_t i = 0; i < drawing.meshes.size(); ++i)
+    items.push_back({&drawing.meshes[i], drawing.colours[i], Eigen::Vector3d::UnitZ().eval()});
   write_file_atomically(command.sheet, encode_png(render(items, options)));
 }
 
@@ -143,8 +152,8 @@ Image side_by_side(const Image& tall, std::size_t teeth, std::size_t per_row) {
 void write_contact_sheet(const SynthCommand& command, const ToothFamilies& families) {
   const auto count = static_cast<std::size_t>(command.count);
   std::vector<int> types;
-  for (int type = 0; type < tooth_type_count; ++type)
-    if (command.fdi == 0 || type == tooth_type_of_fdi(command.fdi)) types.push_back(type);
+  for (const int fdi : command.fdi) types.push_back(tooth_type_of_fdi(fdi));
+  for (int type = 0; command.fdi.empty() && type < tooth_type_count; ++type) types.push_back(type);
   std::vector<MeshFile> teeth;
   for (int type : types) {
     for (std::size_t i = 0; i < count; ++i) {
@@ -167,7 +176,7 @@ void write_contact_sheet(const SynthCommand& command, const ToothFamilies& famil
 void run(const SynthCommand& command) {
   if (command.output.empty() && command.atlas.empty() && command.sheet.empty())
     throw UsageError("Say where to: -o FOLDER for teeth, --sheet PNG for a picture, --atlas FILE for mean crowns.");
-  if (!command.output.empty() && command.fdi == 0) throw UsageError("Say which tooth: --type FDI, such as 36.");
+  if (!command.output.empty() && command.fdi.empty()) throw UsageError("Say which tooth: --type FDI, such as 36.");
   FamilyLoadOptions options;
   if (command.edge_mm > 0) options.vertices = 20000;  // finer than the scan to be made
   const ToothFamilies families = load_tooth_families(command.data, options);
@@ -183,8 +192,8 @@ void add_synth_command(CLI::App& app) {
   CLI::App* synth = app.add_subcommand("synth", "Make complete synthetic teeth, crowns cut from them, and the atlas");
   synth->add_option("--data", command->data, "Folder with templates/tooth_FDI.ply, anatomy.csv and crowns/ssm")
       ->required();
-  synth->add_option("--type", command->fdi, "FDI number of the tooth to make (11-18, 21-28, 31-38, 41-48)");
-  synth->add_option("--count", command->count, "How many")->capture_default_str()->check(CLI::Range(1, 100000));
+  synth->add_option("--type", command->fdi, "FDI numbers of the teeth to make (11-18, 21-28, 31-38, 41-48)");
+  synth->add_option("--count", command->count, "How many of each")->capture_default_str()->check(CLI::Range(1, 100000));
   synth->add_option("--seed", command->seed, "Number of the first; each tooth depends on its number alone")
       ->capture_default_str();
   synth->add_option("-o,--output", command->output, "Folder for tooth_FDI_SEED.ply (and crown_FDI_SEED.ply)");

@@ -151,6 +151,8 @@ void add_train_command(CLI::App& app) {
   auto* data = train_app->add_option("--data", command->data, "Folder with templates/, anatomy.csv and crowns/ssm/");
   train_app->add_option("--out", o.folder, "Folder of checkpoints and best weights")->required();
   train_app->add_flag("--resume", o.resume, "Go on from the folder's checkpoint");
+  train_app->add_option("--start-from", o.start_from,
+                        "Weights to begin with, made on other families; without it the run begins at random");
   train_app->add_option("--samples", o.samples, "Samples in all; the learning rate falls until there")
       ->capture_default_str();
   train_app->add_option("--hours", o.hours, "Stop after this time (0: no limit)")->capture_default_str();

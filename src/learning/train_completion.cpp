@@ -96,6 +96,7 @@ class Trainer {
   void validate();
   void save_checkpoint() const;
   bool load_checkpoint();
+  void load_start();
   void save_best(const std::map<std::string, std::string>& figures) const;
   void share_state();
 
@@ -126,6 +127,7 @@ Trainer::Trainer(const SampleProvider& provider, const TrainingOptions& options)
     share_state();
     return;
   }
+  if (!options.start_from.empty()) load_start();
   QueryLayout layout = initial_layout(provider, options.shape);
   for (int type = 0; type <= unknown_type; ++type) {
     const auto& patches = layout.patches[static_cast<std::size_t>(type)];
@@ -309,6 +311,15 @@ void Trainer::save_checkpoint() const {
   file.metadata["training.seed"] = std::to_string(options_.seed);
   file.metadata["training.best"] = std::to_string(result_.best_root_chamfer);
   write_safetensors(options_.folder / checkpoint_name, file);
+}
+
+void Trainer::load_start() {
+  const TensorFile file = read_safetensors(options_.start_from);
+  std::map<std::string, std::string> own, theirs;
+  note_shape(options_.shape, own);
+  note_shape(read_shape(file.metadata), theirs);
+  if (own != theirs) throw InputError("The weights to start from are of a network of other sizes.");
+  for (TrainedTensor& tensor : tensors_) load_tensor(file, tensor.name, tensor.value);
 }
 
 bool Trainer::load_checkpoint() {

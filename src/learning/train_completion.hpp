@@ -56,13 +56,16 @@ struct TrainingOptions {
   double denoise_jitter = 0.05;     ///< standard deviation of their displacement, units of 12 mm
   bool half_precision = true;       ///< bfloat16 for matrix products where the processor has them
   ProcessOptions processes;
-  int threads = 2;                              ///< each works on its share of a batch, >= 1, divides `batch`
-  std::uint64_t seed = 1;                       ///< of weights, noise and sample numbers
-  int validation_samples = 64;                  ///< held-out samples, numbers that training never reaches; 0: none
-  double validation_minutes = 10;               ///< time between validations
-  double checkpoint_minutes = 3;                ///< time between checkpoints; a stopped run loses at most this
-  int log_steps = 50;                           ///< steps between log lines, >= 1
-  std::filesystem::path folder;                 ///< where checkpoints go; empty: none are written
+  int threads = 2;                 ///< each works on its share of a batch, >= 1, divides `batch`
+  std::uint64_t seed = 1;          ///< of weights, noise and sample numbers
+  int validation_samples = 64;     ///< held-out samples, numbers that training never reaches; 0: none
+  double validation_minutes = 10;  ///< time between validations
+  double checkpoint_minutes = 3;   ///< time between checkpoints; a stopped run loses at most this
+  int log_steps = 50;              ///< steps between log lines, >= 1
+  std::filesystem::path folder;    ///< where checkpoints go; empty: none are written
+  /// Weights to begin with in place of random ones, as exported; empty: none. The teeth of patches are this run's own:
+  /// a network learned on other families goes on with these. Not read where a checkpoint is resumed.
+  std::filesystem::path start_from;
   bool resume = false;                          ///< go on from the folder's checkpoint, if there is one
   std::function<void(const std::string&)> log;  ///< gets each line; may be empty
 };

@@ -100,6 +100,38 @@ TEST_F(Training, TwoProcessesEqualOneWithTwiceTheBatch) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "other" / "checkpoint.safetensors"));
 }
 
+TEST_F(Training, StartsFromOtherWeightsWithItsOwnTeeth) {
+  TrainingOptions options = testing::tiny_options();
+  options.samples = 40;
+  short_run(options);
+  options.hours = 1e-12;  // nothing but the start
+  options.start_from = folder_ / "weights.safetensors";
+  options.folder = folder_ / "next";
+  const auto shifted = [](std::uint64_t number) {
+    TrainingSample sample = testing::tiny_sample(number);
+    for (auto* points : {&sample.input, &sample.target, &sample.matched})
+      for (Eigen::Vector3f& p : *points) p.x() += 0.25F;
+    return sample;
+  };
+  train_completion(shifted, options);
+  const TensorFile before = read_safetensors(options.start_from),
+                   after = read_safetensors(options.folder / "checkpoint.safetensors");
+  for (const auto& [name, tensor] : before.tensors) {
+    if (name == "patches" || name == "patch_normals") continue;
+    EXPECT_EQ(load_floats(tensor), load_floats(after.tensors.at("value." + name))) << name;
+  }
+  const auto mean_x = [](const std::vector<float>& xyz) {
+    double sum = 0;
+    for (std::size_t i = 0; i < xyz.size(); i += 3) sum += xyz[i];
+    return 3 * sum / static_cast<double>(xyz.size());
+  };
+  EXPECT_NEAR(
+      mean_x(load_floats(after.tensors.at("value.patches"))) - mean_x(load_floats(before.tensors.at("patches"))), 0.25,
+      0.1);
+  options.shape.width += options.shape.heads;
+  EXPECT_THROW(train_completion(testing::tiny_sample, options), InputError);
+}
+
 TEST_F(Training, ProcessesThatCannotBeAreRefused) {
   TrainingOptions options = testing::tiny_options();
   options.processes = {2, 2, "127.0.0.1:29500"};

@@ -1,0 +1,123 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "rhizodont/check.hpp"
+#include "rhizodont/complete.hpp"
+#include "rhizodont/error.hpp"
+
+namespace rhizodont {
+namespace {
+
+const std::filesystem::path source_folder = RHIZODONT_SOURCE_DIR;
+
+const CompletionModels& models() {
+  static const CompletionModels loaded = CompletionModels::load(source_folder / "models");
+  return loaded;
+}
+
+const TriangleMesh& crown() {
+  static const TriangleMesh loaded = load_mesh(source_folder / "samples" / "crown_34.ply").mesh;
+  return loaded;
+}
+
+CompleteOptions premolar() {
+  CompleteOptions options;
+  options.fdi = 34;
+  return options;
+}
+
+const CompletedTooth& expected() {
+  static const CompletedTooth tooth = complete_tooth(crown(), models(), premolar());
+  return tooth;
+}
+
+void expect_promises(const CompletedTooth& tooth) {
+  CheckOptions exact;
+  exact.compare_as_float = false;
+  const CheckReport report = check(crown(), tooth.mesh, exact);
+  EXPECT_TRUE(report.holds());
+  EXPECT_EQ(report.crown.kept_triangles, static_cast<std::int64_t>(crown().triangles.size()));
+}
+
+/// The deepest vertex along the growth axis.
+Point apex(const CompletedTooth& tooth) {
+  const Eigen::Vector3d axis = tooth.record.growth_axis;
+  return *std::min_element(tooth.mesh.vertices.begin(), tooth.mesh.vertices.end(),
+                           [&](const Point& a, const Point& b) { return a.dot(axis) < b.dot(axis); });
+}
+
+TEST(RootWishes, AMeasuredLengthIsKept) {
+  for (const double wanted : {10.5, 16.0}) {
+    CompleteOptions options = premolar();
+    options.steering.length_mm = wanted;
+    const CompletedTooth tooth = complete_tooth(crown(), models(), options);
+    EXPECT_NEAR(tooth.record.root_length_mm, wanted, 0.1);
+    EXPECT_FALSE(tooth.record.root_interval);
+    expect_promises(tooth);
+  }
+}
+
+TEST(RootWishes, TorqueTurnsTheApexToTheTongue) {
+  CompleteOptions options = premolar();
+  options.steering.torque_degrees = 10;
+  options.steering.bend_degrees = -15;
+  const CompletedTooth tooth = complete_tooth(crown(), models(), options);
+  expect_promises(tooth);
+  const Eigen::Vector3d to_world = (apex(tooth) - apex(expected()));
+  const Eigen::Vector3d moved = tooth.record.frame_rotation * to_world;  // left tooth: no mirror
+  EXPECT_LT(moved.y(), -1);                                              // +y is the cheek
+  EXPECT_GT(moved.x(), 0.3);                                             // +x is mesial for lower teeth
+}
+
+TEST(RootWishes, UncertaintyIsNoneOnTheCrownAndGrowsDownTheRoot) {
+  const CompletedTooth& tooth = expected();
+  ASSERT_EQ(tooth.uncertainty.size(), tooth.mesh.vertices.size());
+  const Eigen::Vector3d axis = tooth.record.growth_axis;
+  const double deepest = apex(tooth).dot(axis), length = tooth.record.root_length_mm;
+  double upper = 0, lower = 0;
+  int upper_count = 0, lower_count = 0;
+  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v) {
+    if (tooth.source[v] == VertexSource::scan) {
+      ASSERT_EQ(tooth.uncertainty[v], 0);
+      continue;
+    }
+    ASSERT_GE(tooth.uncertainty[v], 0);
+    ASSERT_LT(tooth.uncertainty[v], 10);
+    const double height = (tooth.mesh.vertices[v].dot(axis) - deepest) / length;
+    (height > 0.8 ? upper : lower) += height > 0.8 || height < 0.2 ? tooth.uncertainty[v] : 0;
+    upper_count += height > 0.8 ? 1 : 0;
+    lower_count += height < 0.2 ? 1 : 0;
+  }
+  EXPECT_GT(lower / lower_count, 1.5 * upper / upper_count);
+}
+
+TEST(RootWishes, CandidatesSpreadOverTheInterval) {
+  ASSERT_TRUE(expected().record.root_interval) << "the shipped weights are calibrated";
+  const RootInterval interval = *expected().record.root_interval;
+  EXPECT_LT(interval.length_low_mm, interval.length_high_mm);
+  EXPECT_GT(interval.apex_radius_mm, 0);
+  const auto candidates = complete_candidates(crown(), models(), 3, premolar());
+  ASSERT_EQ(candidates.size(), 3U);
+  EXPECT_EQ(candidates[0].mesh.vertices, expected().mesh.vertices);
+  EXPECT_NEAR(candidates[1].record.root_length_mm, interval.length_low_mm, 0.1);
+  EXPECT_NEAR(candidates[2].record.root_length_mm, interval.length_high_mm, 0.1);
+  for (const CompletedTooth& tooth : candidates) expect_promises(tooth);
+}
+
+TEST(RootWishes, WhatCannotBeIsRefused) {
+  CompleteOptions options = premolar();
+  options.steering.length_mm = 13;
+  EXPECT_THROW(complete_candidates(crown(), models(), 3, options), UsageError);
+  EXPECT_THROW(complete_candidates(crown(), models(), 0, premolar()), UsageError);
+  EXPECT_THROW(complete_candidates(crown(), models(), 10, premolar()), UsageError);
+  options.steering.length_mm = 31;
+  EXPECT_THROW(complete_tooth(crown(), models(), options), UsageError);
+}
+
+}  // namespace
+}  // namespace rhizodont
