@@ -4,11 +4,14 @@
 #include "evaluation/json.hpp"
 #include "json_option.hpp"
 #include "rhizodont/check.hpp"
+#include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
+#include <fstream>
 #include <memory>
 #include <string>
 
@@ -17,6 +20,7 @@ namespace {
 
 struct CheckCommand {
   std::string crown, tooth;
+  std::string report;
   CheckOptions options;
   JsonOption json;
 };
@@ -44,6 +48,7 @@ void print_table(const CheckReport& report) {
   row("crown triangles kept",
       fmt::format("{} of {} ({:.3f} %)", crown.kept_triangles, crown.triangles, 100 * crown.kept_share));
   row("crown triangles broken", crown.broken_triangles.size());
+  if (crown.repaired_triangles > 0) row("crown triangles repaired", crown.repaired_triangles);
   row("crown vertices kept", fmt::format("{} of {}", crown.kept_vertices, crown.vertices));
   row("crown vertices dropped", crown.dropped_vertices.size());
   if (crown.deviation) {
@@ -72,10 +77,29 @@ void print_table(const CheckReport& report) {
   for (const std::string& failure : report.failures) fmt::print("- {}\n", failure);
 }
 
+/// The triangles that the report of `complete --repair` lists. Throws InputError for a report on another file.
+std::vector<int> repaired_triangles(const std::string& report_file, const std::string& crown_file) {
+  std::ifstream stream(report_file);
+  if (!stream) throw InputError(fmt::format("The file {} cannot be read.", report_file));
+  try {
+    const auto report = nlohmann::json::parse(stream);
+    if (report.at("input").at("sha256").get<std::string>() != sha256_of_file(crown_file))
+      throw InputError(fmt::format("{} is the report on another crown than {}.", report_file, crown_file));
+    std::vector<int> ids;
+    for (const auto& step : report.at("repairs"))
+      for (const auto& id : step.at("triangles")) ids.push_back(id.get<int>());
+    return ids;
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(fmt::format("{} is not a report of rhizodont complete.", report_file));
+  }
+}
+
 void run(const CheckCommand& command) {
   const MeshFile crown = load_mesh(command.crown);
   const MeshFile tooth = load_mesh(command.tooth);
-  const CheckReport report = check(crown.mesh, tooth.mesh, command.options);
+  CheckOptions options = command.options;
+  if (!command.report.empty()) options.repaired_triangles = repaired_triangles(command.report, command.crown);
+  const CheckReport report = check(crown.mesh, tooth.mesh, options);
   if (command.json.wants_table()) print_table(report);
   command.json.write(report);
   if (!report.holds()) exit_with(static_cast<int>(ErrorCode::no_result));
@@ -94,6 +118,8 @@ void add_check_command(CLI::App& app) {
       ->add_option("--least-kept", command->options.least_kept_share,
                    "Least share of the crown's triangles that must be in the tooth, 0 to 1")
       ->capture_default_str();
+  check_app->add_option("--report", command->report,
+                        "Report of 'complete --repair': triangles that it lists as repaired are not demanded");
   command->json.add_to(*check_app);
   check_app->callback([command] { run(*command); });
 }

@@ -79,11 +79,16 @@ void print_summary(const CompletedTooth& tooth, const std::string& output) {
   if (const auto& interval = r.root_interval)
     fmt::print("  root length with 80 % probability {:.1f} to {:.1f} mm, apex within {:.1f} mm\n",
                interval->length_low_mm, interval->length_high_mm, interval->apex_radius_mm);
+  for (const RepairStep& step : r.repairs)
+    fmt::print("  repaired: {} ({} vertices, {} triangles)\n", step.action, step.vertices.size(),
+               step.triangles.size());
   for (const std::string& warning : r.warnings) fmt::print("  note: {}\n", warning);
 }
 
 void run(const CompleteCommand& command) {
   if (const std::string warning = blas_warning(); !warning.empty()) fmt::print(stderr, "rhizodont: {}\n", warning);
+  require_savable(command.output);
+  if (!command.report.empty()) require_writable_place(command.report);
   const MeshFile crown = load_mesh(command.crown);
   const CompletionModels models =
       CompletionModels::load(command.models.empty() ? default_models_folder() : std::filesystem::path(command.models));
@@ -131,6 +136,8 @@ void add_complete_command(CLI::App& app) {
   complete->add_option("--cap", command->options.cap, "A cap that closes the crown's base: drop, keep")
       ->transform(CLI::CheckedTransformer(cap_names))
       ->default_str("drop");
+  complete->add_flag("--repair", command->options.repair,
+                     "Mend a defective crown first: merges, drops and turns, each listed in the report");
   complete->add_option("--unit", command->options.millimetres_per_unit, "Unit of the crown's file: mm, cm, in, m")
       ->transform(CLI::CheckedTransformer(unit_names))
       ->default_str("mm");

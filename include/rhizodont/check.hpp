@@ -22,6 +22,9 @@ struct CheckOptions {
   /// Skirt and a cap over the base may be dropped, but a tooth that keeps less than this is not the tooth of this
   /// crown.
   double least_kept_share = 0.25;
+  /// Triangles of the crown that a repair dropped, cut or turned over, as listed in the report: they count as kept in
+  /// either orientation and are not demanded. In range.
+  std::vector<int> repaired_triangles;
 };
 
 /// Distances of the crown's vertices (those in use) from the tooth's surface, mm.
@@ -41,6 +44,7 @@ struct CrownCheck {
   std::vector<int> dropped_vertices;        ///< of these, not found: skirt, cap or repaired defects
   std::int64_t triangles = 0;               ///< of the crown, with three different vertices
   std::int64_t kept_triangles = 0;          ///< of these, in the tooth with the same vertices in the same cyclic order
+  std::int64_t repaired_triangles = 0;      ///< of those listed as repaired, not in the tooth as they stood
   double kept_share = 0;                    ///< kept_triangles / triangles
   std::vector<int> broken_triangles;        ///< of the crown: all three vertices kept, triangle not in the tooth
   std::optional<CrownDeviation> deviation;  ///< nothing if the tooth has no surface

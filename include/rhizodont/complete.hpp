@@ -6,6 +6,7 @@
 #include "rhizodont/io.hpp"
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/quality.hpp"
+#include "rhizodont/repair_step.hpp"
 #include "rhizodont/root_steering.hpp"
 
 #include <array>
@@ -27,6 +28,7 @@ struct CompleteOptions {
   std::optional<int> fdi;  ///< 11-18, 21-28, 31-38, 41-48; unset: the type is guessed from shape
   double e = 0.5;          ///< mm, [0.2, 2]: side of the lattice under the guiding surface; new edges are about e / 2
   CapHandling cap = CapHandling::drop;
+  bool repair = false;              ///< mend a defective crown first, where else it would be refused; all is listed
   double millimetres_per_unit = 1;  ///< > 0: of the input's coordinates; the output has the input's unit
   /// mm, [0, 5]: width of the smoothed band beside the crown; unset: from the border's edges and from how far the root
   /// misses the border.
@@ -38,7 +40,7 @@ struct CompleteOptions {
 /// A vertex of the input that the tooth does not have, and why.
 struct DroppedCrownVertex {
   int vertex = 0;      ///< index in the input
-  std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt"
+  std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt", or the action of a repair
 };
 
 /// Where the truth lies with 80 % probability, as found on generated teeth that the network was not trained on.
@@ -64,7 +66,8 @@ struct CompletionRecord {
   bool frame_mirrored = false;
   std::vector<int> kept_vertices;  ///< of the input, ascending: vertex i of the tooth is kept_vertices[i]
   std::vector<DroppedCrownVertex> dropped_vertices;
-  int crown_triangles = 0;  ///< of the input
+  std::vector<RepairStep> repairs;  ///< what was repaired; empty unless asked for
+  int crown_triangles = 0;          ///< of the input
   int kept_triangles = 0;
   bool cap_dropped = false;
   double root_length_mm = 0;   ///< along the growth axis, from the crown's border (lowest point) to the apex
@@ -121,7 +124,7 @@ class CompletionModels {
 };
 
 /// Version of the report's layout; the schema stands in docs/report.schema.json.
-inline constexpr int report_version = 1;
+inline constexpr int report_version = 2;
 
 /// The report on a completed tooth as JSON text. `input_file` and `input_bytes_sha256` say what was read; only the
 /// file's name goes into the report, not its folder. Schema: docs/report.schema.json.
@@ -138,7 +141,8 @@ std::filesystem::path default_models_folder();
 using ProgressCallback = std::function<void(std::string_view stage)>;
 
 /// Completes a scanned crown to a whole tooth, with the crown kept bit for bit (paper, figure 1). The result has been
-/// checked: the crown's triangles are found in it and it is a solid, or nothing is returned.
+/// checked: the crown's triangles are found in it and it is a solid, or nothing is returned. With `options.repair`
+/// defects are taken out first; the tooth then keeps the repaired crown, which has no coordinate that the input lacks.
 ///
 /// `crown`: open at its base, or closed by a cap that is recognised and dropped; triangles counterclockwise from
 /// outside. Throws InputError where the crown cannot be used (empty, not finite, several pieces, inside out,

@@ -61,6 +61,13 @@ MeshFile load_mesh(const std::filesystem::path& path);
 /// of another length) or if the file cannot be written.
 void save_mesh(const std::filesystem::path& path, const MeshFile& file);
 
+/// Whether `save_mesh` could write here, without writing. Throws UsageError for an extension that it does not know,
+/// InputError where no file can be made.
+void require_savable(const std::filesystem::path& path);
+
+/// Whether a file could be written here, without writing. Throws InputError if not.
+void require_writable_place(const std::filesystem::path& path);
+
 /// Writes bytes to a file that appears complete or not at all. Throws InputError if it cannot be written.
 void write_file_atomically(const std::filesystem::path& path, const std::string& bytes);
 

@@ -143,7 +143,8 @@ struct Comparison {
   std::vector<bool> touches_crown;  // per triangle of the tooth: one of its vertices is the crown's
 };
 
-Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as_float) {
+Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as_float,
+                   const std::vector<int>& repaired_triangles) {
   Comparison found;
   CrownCheck& report = found.crown;
   report.compared_as_float = as_float;
@@ -163,16 +164,25 @@ Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as
       report.dropped_vertices.push_back(static_cast<int>(v));
   }
 
+  std::vector<bool> repaired(crown.triangles.size(), false);
+  for (const int t : repaired_triangles) repaired[static_cast<std::size_t>(t)] = true;
   const std::vector<Triangle> in_tooth = sorted_triangles(tooth, of_tooth);
+  const auto is_in_tooth = [&](const Triangle& triangle) {
+    return std::binary_search(in_tooth.begin(), in_tooth.end(), canonical(triangle, of_crown));
+  };
   for (std::size_t t = 0; t < crown.triangles.size(); ++t) {
     const Triangle& triangle = crown.triangles[t];
     if (!has_three_corners(triangle)) continue;
     ++report.triangles;
     if (!std::all_of(triangle.begin(), triangle.end(), is_kept)) continue;
-    if (std::binary_search(in_tooth.begin(), in_tooth.end(), canonical(triangle, of_crown)))
+    if (is_in_tooth(triangle)) {
       ++report.kept_triangles;
-    else
+    } else if (repaired[t]) {
+      ++report.repaired_triangles;
+      report.kept_triangles += is_in_tooth({triangle[0], triangle[2], triangle[1]});
+    } else {
       report.broken_triangles.push_back(static_cast<int>(t));
+    }
   }
   report.kept_share =
       report.triangles > 0 ? static_cast<double>(report.kept_triangles) / static_cast<double>(report.triangles) : 0;
@@ -260,10 +270,14 @@ CheckReport check(const TriangleMesh& crown, const TriangleMesh& tooth, const Ch
   if (crown.triangles.empty()) throw InputError("the crown has no triangles");
   require_valid_indices(crown);
   require_finite(crown.vertices);
+  for (const int t : options.repaired_triangles)
+    if (t < 0 || static_cast<std::size_t>(t) >= crown.triangles.size())
+      throw UsageError(fmt::format("triangle {}, listed as repaired, is not one of the crown's", t));
 
   const TriangleMesh usable = usable_part(tooth);
   const Diagnosis found = diagnose(tooth);
-  Comparison comparison = compare(crown, usable, options.compare_as_float.value_or(all_floats(usable)));
+  Comparison comparison =
+      compare(crown, usable, options.compare_as_float.value_or(all_floats(usable)), options.repaired_triangles);
   CheckReport report;
   report.crown = std::move(comparison.crown);
   if (has_surface(usable)) report.crown.deviation = deviation_from(usable, compact(crown).mesh.vertices);

@@ -20,6 +20,7 @@ Json crown_json(const CrownCheck& crown) {
             {"dropped_vertices", crown.dropped_vertices},
             {"triangles", crown.triangles},
             {"kept_triangles", crown.kept_triangles},
+            {"repaired_triangles", crown.repaired_triangles},
             {"kept_share", crown.kept_share},
             {"broken_triangles", crown.broken_triangles},
             {"deviation", nullptr}};

@@ -5,9 +5,12 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/mesh.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -97,6 +100,20 @@ class ByteCursor {
   std::size_t place_ = 0;
   bool swap_;
 };
+
+/// Reads the three coordinates of a vertex, in any of the text formats; `fail(sentence)` does not return.
+template <class Fail>
+Point read_coordinates(TextCursor& words, const Fail& fail) {
+  Point point;
+  for (double& coordinate : point) {
+    const auto word = words.word();
+    const auto value = parse_number<double>(word.value_or(""));
+    if (!value) fail(word ? fmt::format("'{:.30}' is not a number", *word) : "a vertex needs three coordinates");
+    if (!std::isfinite(*value)) fail("a coordinate is not a finite number");
+    coordinate = *value;
+  }
+  return point;
+}
 
 /// Appends the fan of a polygon from its first corner.
 inline void append_fan(std::vector<Triangle>& triangles, const std::vector<std::int32_t>& polygon) {

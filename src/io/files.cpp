@@ -53,6 +53,12 @@ Function function_for(const fs::path& path, const std::map<std::string, Function
   throw UsageError(fmt::format("{}: only files named {} can be {}", path.string(), names, verb));
 }
 
+Writer writer_for(const fs::path& path) {
+  static const std::map<std::string, Writer> writers{
+      {".ply", write_ply}, {".stl", write_stl}, {".obj", write_obj}, {".glb", write_glb}};
+  return function_for(path, writers, "written");
+}
+
 void take_out_repeated_corners(MeshFile& file) {
   std::vector<Triangle>& triangles = file.mesh.triangles;
   std::size_t kept = 0;
@@ -119,6 +125,21 @@ class TemporaryFile {
   bool moved_ = false;
 };
 
+/// The file that a path leads to, over links. Throws InputError for a folder.
+fs::path target_behind(const fs::path& path) {
+  fs::path target = path;
+  std::error_code ignored;
+  if (fs::is_symlink(target, ignored) && fs::exists(target, ignored)) target = fs::canonical(target);
+  if (fs::is_directory(target, ignored))
+    throw InputError(fmt::format("{}: this is a folder, not a file", path.string()));
+  return target;
+}
+
+bool is_pipe_or_device(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored) && !fs::is_regular_file(path, ignored);
+}
+
 }  // namespace
 
 bool coordinates_fit_float(const TriangleMesh& mesh) {
@@ -171,22 +192,26 @@ MeshFile load_mesh(const std::filesystem::path& path) {
   }
 }
 
+void require_savable(const std::filesystem::path& path) {
+  writer_for(path);
+  require_writable_place(path);
+}
+
 void save_mesh(const std::filesystem::path& path, const MeshFile& file) {
-  static const std::map<std::string, Writer> writers{
-      {".ply", write_ply}, {".stl", write_stl}, {".obj", write_obj}, {".glb", write_glb}};
-  const Writer writer = function_for(path, writers, "written");
+  const Writer writer = writer_for(path);
   require_writable(file);
   write_file_atomically(path, writer(file));
 }
 
+void require_writable_place(const std::filesystem::path& path) {
+  const fs::path target = target_behind(path);
+  if (!is_pipe_or_device(target)) TemporaryFile{target};
+}
+
 void write_file_atomically(const std::filesystem::path& path, const std::string& bytes) {
-  fs::path target = path;
-  std::error_code ignored;
-  if (fs::is_symlink(target, ignored) && fs::exists(target, ignored)) target = fs::canonical(target);
-  if (fs::is_directory(target, ignored))
-    throw InputError(fmt::format("{}: this is a folder, not a file", path.string()));
-  if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored)) {
-    // A pipe or a device must not be replaced by a file.
+  const fs::path target = target_behind(path);
+  if (is_pipe_or_device(target)) {
+    // It must not be replaced by a file.
     std::ofstream stream(target, std::ios::binary);
     if (!stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size())).flush()) TemporaryFile::fail(target);
     return;

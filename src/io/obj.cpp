@@ -51,15 +51,7 @@ class ObjReader {
   }
 
   void read_vertex(TextCursor& words) {
-    Point point;
-    for (int i = 0; i < 3; ++i) {
-      const auto word = words.word();
-      const auto value = parse_number<double>(word.value_or(""));
-      if (!value) fail(word ? fmt::format("'{:.30}' is not a number", *word) : "a vertex needs three coordinates");
-      if (!std::isfinite(*value)) fail("a coordinate is not a finite number");
-      point[i] = *value;
-    }
-    file_.mesh.vertices.push_back(point);
+    file_.mesh.vertices.push_back(read_coordinates(words, [&](const std::string& sentence) { fail(sentence); }));
   }
 
   void read_face(TextCursor& words) {

@@ -53,13 +53,31 @@ Eigen::Vector3d area_vector(const TriangleMesh& mesh) {
   return sum;
 }
 
-double volume(const TriangleMesh& mesh) {
-  if (mesh.vertices.empty()) return 0;
-  const Point apex = bounding_box(mesh.vertices).center();
+namespace {
+
+double cone_from(const Point& apex, const TriangleMesh& mesh) {
   double sum = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
     sum += triangle_area_vector(mesh, t).dot(corner(mesh, t, 0) - apex) / 3;
   return sum;
+}
+
+}  // namespace
+
+double volume(const TriangleMesh& mesh) {
+  return mesh.vertices.empty() ? 0 : cone_from(bounding_box(mesh.vertices).center(), mesh);
+}
+
+double cone_volume(const TriangleMesh& mesh) {
+  const EdgeTable table = edge_table(mesh);
+  Point sum = Point::Zero();
+  int ends = 0;
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    if (table.triangle_count(e) != 1) continue;
+    for (const int v : table.vertices[e]) sum += mesh.vertices[static_cast<std::size_t>(v)];
+    ends += 2;
+  }
+  return ends == 0 ? volume(mesh) : cone_from(sum / ends, mesh);
 }
 
 double surface_area(const TriangleMesh& mesh) {

@@ -31,6 +31,10 @@ Eigen::Vector3d area_vector(const TriangleMesh& mesh);
 /// it from the centre of its bounding box (meaningless as a volume).
 double volume(const TriangleMesh& mesh);
 
+/// Volume in mm^3 between an open mesh and the mean of its border vertices, positive where the triangles face away from
+/// it; of a closed mesh, its volume.
+double cone_volume(const TriangleMesh& mesh);
+
 /// Surface area in mm^2.
 double surface_area(const TriangleMesh& mesh);
 

@@ -85,6 +85,18 @@ struct NearestVertexIndex::Tree {
     std::sort(found.begin(), found.end(), nearer);
     return found;
   }
+
+  std::size_t nearest_of_all(const Point& query, std::span<NearVertex> found) const {
+    std::vector<NearVertex> all(points.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const Eigen::Vector3d d = query - points[i];
+      all[i] = {static_cast<int>(i), d.x() * d.x() + d.y() * d.y() + d.z() * d.z()};  // summed as the tree does
+    }
+    const std::size_t count = std::min(found.size(), all.size());
+    std::partial_sort_copy(all.begin(), all.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count),
+                           nearer);
+    return count;
+  }
 };
 
 NearestVertexIndex::NearestVertexIndex(std::vector<Point> points) : tree_(std::make_unique<Tree>()) {
@@ -114,6 +126,9 @@ std::vector<NearVertex> NearestVertexIndex::nearest(const Point& query, std::siz
 
 std::size_t NearestVertexIndex::nearest(const Point& query, std::span<NearVertex> found) const {
   if (found.empty()) return 0;
+  // Insertion into a long list costs more than looking at every vertex.
+  constexpr std::size_t long_list = 256;
+  if (found.size() > long_list) return tree_->nearest_of_all(query, found);
   NearestSet set(found);
   tree_->index->findNeighbors(set, query.data(), nanoflann::SearchParams(0, 0.0F, false));
   return set.size();

@@ -11,15 +11,13 @@
 #include "fusion/fuse.hpp"
 #include "isosurface/guiding_surface.hpp"
 #include "mesh/closest_point.hpp"
-#include "mesh/diagnosis.hpp"
 #include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
-#include "pipeline/closed_crown.hpp"
 #include "pipeline/crown_fit.hpp"
-#include "pipeline/crown_input.hpp"
 #include "pipeline/guiding_cloud.hpp"
 #include "pipeline/models.hpp"
 #include "pipeline/stage_clock.hpp"
+#include "pipeline/take_crown.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
 #include "skirt/skirt.hpp"
@@ -43,27 +41,6 @@ void require_options_in_range(const CompleteOptions& options) {
   if (options.threads < 0) throw UsageError("The number of threads cannot be negative.");
   if (options.fdi) tooth_type_of_fdi(*options.fdi);
   require_steering_in_range(options.steering);
-}
-
-TriangleMesh scaled(TriangleMesh mesh, double factor) {
-  if (factor != 1)
-    for (Point& p : mesh.vertices) p *= factor;
-  return mesh;
-}
-
-/// The part of the crown that the tooth will keep: open at the base, its border made of simple loops.
-KeptCrown open_crown(const TriangleMesh& crown, const Atlas& atlas, const CompleteOptions& options,
-                     CompletionRecord& record) {
-  std::vector<bool> keep(crown.triangles.size(), true);
-  const bool closed = diagnose(crown).border_edges.empty();
-  if (closed) {
-    if (options.cap == CapHandling::keep)
-      throw InputError("The crown is closed and its cap was to be kept: there is no place for a root.");
-    const Cap cap = recognise_cap(crown, atlas, options.fdi);
-    for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = !cap.is_cap[t];
-    record.cap_dropped = true;
-  }
-  return keep_crown(crown, keep, closed ? "cap" : "skirt");
 }
 
 /// FDI number and canonical pose; a number that was not given is guessed, and so said.
@@ -182,8 +159,11 @@ TriangleMesh in_input_unit(const TriangleMesh& tooth, const TriangleMesh& input,
   return result;
 }
 
-CheckReport prove_promises(const TriangleMesh& input, const TriangleMesh& tooth) {
+CheckReport prove_promises(const TriangleMesh& input, const TriangleMesh& tooth,
+                           const std::vector<RepairStep>& repairs) {
   CheckOptions options;
+  for (const RepairStep& step : repairs)
+    options.repaired_triangles.insert(options.repaired_triangles.end(), step.triangles.begin(), step.triangles.end());
   options.compare_as_float = false;
   options.least_kept_share = 1e-9;  // what was dropped, and why, stands in the record
   const CheckReport report = check(input, tooth, options);
@@ -198,15 +178,7 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   CompletedTooth tooth;
   CompletionRecord& record = tooth.record;
   clock.begin("crown");
-  require_usable_crown(input);
-  const TriangleMesh in_millimetres = scaled(input, options.millimetres_per_unit);
-  require_tooth_size(in_millimetres, options.millimetres_per_unit);
-  const KeptCrown crown = open_crown(in_millimetres, models.atlas, options, record);
-  require_outward_and_uncut(crown.mesh);
-  record.crown_triangles = static_cast<int>(input.triangles.size());
-  record.kept_triangles = static_cast<int>(crown.mesh.triangles.size());
-  record.kept_vertices = crown.old_vertices;
-  for (const DroppedVertex& d : crown.dropped) record.dropped_vertices.push_back({d.vertex, d.reason});
+  const KeptCrown crown = take_crown(input, models.atlas, options, record);
 
   clock.begin("frame");
   const CrownFrame frame = find_frame(crown.mesh, models.atlas, options, record);
@@ -234,7 +206,7 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   tooth.source.assign(tooth.mesh.vertices.size(), VertexSource::predicted);
   std::fill_n(tooth.source.begin(), crown.old_vertices.size(), VertexSource::scan);
   for (const int v : fused.transition.vertices) tooth.source[static_cast<std::size_t>(v)] = VertexSource::transition;
-  record.promises = prove_promises(input, tooth.mesh);
+  record.promises = prove_promises(input, tooth.mesh, record.repairs);
   return tooth;
 }
 

@@ -25,7 +25,12 @@ std::vector<std::int64_t> flat_ids(const std::vector<std::array<int, 2>>& edges)
 std::vector<std::int64_t> widened(const std::vector<int>& ids) { return {ids.begin(), ids.end()}; }
 
 /// Largest extent of the box, in whatever unit the mesh has.
-double extent(const TriangleMesh& mesh) { return bounding_box(mesh.vertices).sizes().maxCoeff(); }
+double extent(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;  // of what triangles use
+  for (const Triangle& t : mesh.triangles)
+    for (const int v : t) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
+  return box.sizes().maxCoeff();
+}
 
 constexpr double smallest_tooth = 2;  // mm
 constexpr double largest_tooth = 20;
@@ -39,9 +44,9 @@ constexpr std::array<Unit, 3> other_units{{{"centimetres", "cm", 10}, {"inches",
 
 }  // namespace
 
-void require_usable_crown(const TriangleMesh& crown) {
+Diagnosis require_usable_crown(const TriangleMesh& crown) {
   if (crown.triangles.empty()) throw InputError("The crown has no triangles.");
-  const Diagnosis d = diagnose(crown);
+  Diagnosis d = diagnose(crown);
   if (!d.non_finite_vertices.empty())
     throw InputError("The crown has vertices whose coordinates are not numbers.", widened(d.non_finite_vertices));
   if (!d.out_of_range_triangles.empty())
@@ -57,6 +62,7 @@ void require_usable_crown(const TriangleMesh& crown) {
                      flat_ids(d.misoriented_edges));
   if (const int pieces = connected_components(crown).count; pieces > 1)
     throw InputError(fmt::format("The mesh consists of {} separate pieces: give one crown.", pieces));
+  return d;
 }
 
 void require_tooth_size(const TriangleMesh& crown, double millimetres_per_unit) {
@@ -73,21 +79,14 @@ void require_tooth_size(const TriangleMesh& crown, double millimetres_per_unit) 
 }
 
 void require_outward_and_uncut(const TriangleMesh& open_crown) {
-  // The cone over the crown from its border's centre: positive where the triangles face outward.
-  Point centre = Point::Zero();
-  std::size_t count = 0;
-  for (const auto& loop : border_loops(open_crown))
-    for (const int v : loop) {
-      centre += open_crown.vertices[static_cast<std::size_t>(v)];
-      ++count;
-    }
-  if (count > 0) centre /= static_cast<double>(count);
-  double cone = 0;
-  for (std::size_t t = 0; t < open_crown.triangles.size(); ++t) {
-    const Point& p = open_crown.vertices[static_cast<std::size_t>(open_crown.triangles[t][0])];
-    cone += triangle_area_vector(open_crown, t).dot(p - centre);
-  }
-  if (cone <= 0) throw InputError("The crown's triangles face inwards: turn them over.");
+  if (cone_volume(open_crown) <= 0) throw InputError("The crown's triangles face inwards: turn them over.");
+  // Euler: a disc with h handles and k further holes has V - E + F = 1 - 2 h - k.
+  const auto count = [](std::size_t size) { return static_cast<std::int64_t>(size); };
+  const std::int64_t euler =
+      count(open_crown.vertices.size()) - count(edge_table(open_crown).size()) + count(open_crown.triangles.size());
+  const std::int64_t handles = (2 - euler - count(border_loops(open_crown).size())) / 2;
+  if (handles > 0)
+    throw InputError(fmt::format("The crown has {} handles, bridges over gaps or tunnels: a tooth has none.", handles));
   const auto cuts = self_intersecting_triangles(open_crown);
   if (cuts.empty()) return;
   std::vector<std::int64_t> ids;

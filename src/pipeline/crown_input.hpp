@@ -2,20 +2,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "mesh/diagnosis.hpp"
 #include "rhizodont/mesh.hpp"
 
 namespace rhizodont {
 
 /// Refuses meshes that no tooth can be made of, with a sentence that says what is wrong and where: no triangles,
 /// indices out of range, coordinates that are not finite, edges with more than two triangles, triangles turned against
-/// their neighbours, several pieces. Throws InputError (ids of vertices or triangles).
-void require_usable_crown(const TriangleMesh& crown);
+/// their neighbours, several pieces. Throws InputError (ids of vertices or triangles). Returns what was found out.
+Diagnosis require_usable_crown(const TriangleMesh& crown);
 
 /// Refuses a crown that is not between 2 and 20 mm across, with a hint at the unit it may have; `millimetres_per_unit`
 /// is what the coordinates were already multiplied with. Throws InputError.
 void require_tooth_size(const TriangleMesh& crown, double millimetres_per_unit);
 
-/// Refuses an open crown whose triangles face inwards, or that cuts itself. Throws InputError (ids of triangles).
+/// Refuses an open crown whose triangles face inwards, that has handles, or that cuts itself. Throws InputError (ids of
+/// triangles). Precondition: one piece, its border made of simple loops.
 void require_outward_and_uncut(const TriangleMesh& open_crown);
 
 }  // namespace rhizodont

@@ -39,6 +39,13 @@ Json crown_json(const CompletionRecord& record) {
           {"kept_vertices", record.kept_vertices}};
 }
 
+Json repairs_json(const std::vector<RepairStep>& repairs) {
+  Json json = Json::array();
+  for (const RepairStep& step : repairs)
+    json.push_back({{"action", step.action}, {"vertices", step.vertices}, {"triangles", step.triangles}});
+  return json;
+}
+
 Json frame_json(const CompletionRecord& record) {
   return {{"growth_axis", numbers(record.growth_axis)},
           {"rotation", rows(record.frame_rotation)},
@@ -116,6 +123,7 @@ std::string completion_report(const CompletedTooth& tooth, const CompleteOptions
       {"input", {{"file", input_file.filename().string()}, {"sha256", input_bytes_sha256}}},
       {"options",
        {{"e_mm", options.e},
+        {"repair", options.repair},
         {"cap", options.cap == CapHandling::keep ? "keep" : "drop"},
         {"millimetres_per_unit", options.millimetres_per_unit},
         {"transition_mm", options.transition ? Json(*options.transition) : Json(nullptr)},
@@ -124,6 +132,7 @@ std::string completion_report(const CompletedTooth& tooth, const CompleteOptions
       {"fdi", {{"number", record.fdi}, {"guessed", record.fdi_guessed}}},
       {"frame", frame_json(record)},
       {"crown", crown_json(record)},
+      {"repairs", repairs_json(record.repairs)},
       {"root", root_json(record)},
       {"joining", joining_json(record)},
       {"new_triangles", new_triangles_json(record.promises.new_triangles)},

@@ -11,7 +11,6 @@
 #include "rhizodont/error.hpp"
 
 #include <algorithm>
-#include <map>
 
 namespace rhizodont {
 namespace {
@@ -51,15 +50,14 @@ bool give_up_small_components(const TriangleMesh& crown, const std::vector<bool>
 
 /// Gives up the vertices that more than one piece of the border passes; true if there were any.
 bool give_up_pinches(const TriangleMesh& crown, const std::vector<bool>& mask, std::vector<Use>& use) {
-  std::map<std::pair<int, int>, int> half_edges;
-  for (std::size_t t = 0; t < mask.size(); ++t) {
-    if (!mask[t]) continue;
-    const Triangle& tri = crown.triangles[t];
-    for (std::size_t i = 0; i < 3; ++i) ++half_edges[{tri[i], tri[(i + 1) % 3]}];
-  }
+  const Submesh part = submesh(crown, mask);
+  const EdgeTable table = edge_table(part.mesh);
   std::vector<int> leaving(crown.vertices.size(), 0);
-  for (const auto& [h, count] : half_edges)
-    if (!half_edges.contains({h.second, h.first})) leaving[static_cast<std::size_t>(h.first)] += count;
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    if (table.triangle_count(e) != 1) continue;
+    const int from = half_edge_from(part.mesh, table.half_edges[static_cast<std::size_t>(table.first[e])]);
+    ++leaving[static_cast<std::size_t>(part.old_vertices[static_cast<std::size_t>(from)])];
+  }
   bool any = false;
   for (std::size_t v = 0; v < use.size(); ++v) {
     if (leaving[v] <= 1) continue;

@@ -104,6 +104,38 @@ TEST_F(Complete, MeshesThatAreNoCrownAreRefused) {
   expect_refused("metres.obj", "metres (--unit m)");
 }
 
+TEST_F(Complete, RepairsOnRequestAndCheckProvesItByTheReport) {
+  TriangleMesh crown = load_mesh(sample("crown_34.ply")).mesh;
+  const Triangle t = crown.triangles[100];
+  crown.vertices.push_back(crown.vertices[0] + Point(1, 1, 1));
+  crown.triangles.push_back({t[0], t[1], static_cast<std::int32_t>(crown.vertices.size()) - 1});
+  std::swap(crown.triangles[50][0], crown.triangles[50][1]);
+  crown.triangles.push_back(crown.triangles[60]);
+  write("bad.ply", crown);
+  expect_refused("bad.ply", "--repair may help");
+  const Outcome outcome = run("complete bad.ply --fdi 34 --repair -o tooth.ply --report report.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.error;
+  EXPECT_NE(outcome.out.find("repaired: triangle turned over (0 vertices, 1 triangles)"), std::string::npos);
+  EXPECT_EQ(run("check bad.ply tooth.ply").code, 4) << "a turned triangle is not the crown's";
+  EXPECT_EQ(run("check bad.ply tooth.ply --report report.json").code, 0);
+  auto report = nlohmann::json::parse(std::ifstream(file("report.json")));
+  EXPECT_EQ(report["repairs"].size(), 3U);
+  expect_error("check '" + sample("crown_34.ply").string() + "' tooth.ply --report report.json", 3, "another crown");
+  write_bytes("other.json", "{}");
+  expect_error("check bad.ply tooth.ply --report other.json", 3, "not a report");
+}
+
+TEST_F(Complete, TheSameBytesForAnyNumberOfThreads) {
+  const std::string crown = "'" + sample("crown_36.stl").string() + "'";
+  std::string first;
+  for (const std::string threads : {"1", "2", "4", "2"}) {
+    ASSERT_EQ(run("complete " + crown + " --fdi 36 --e 0.8 --quiet --threads " + threads + " -o tooth.ply").code, 0);
+    const std::string bytes = test::read_all(file("tooth.ply"));
+    if (first.empty()) first = bytes;
+    EXPECT_TRUE(bytes == first) << threads << " threads";
+  }
+}
+
 TEST_F(Complete, WrongUsage) {
   const std::string crown = "'" + sample("crown_34.ply").string() + "'";
   expect_error("complete " + crown, 2, "--output");
@@ -111,6 +143,9 @@ TEST_F(Complete, WrongUsage) {
   expect_error("complete " + crown + " --fdi 34 --e 9 -o tooth.ply", 2, "out of its range");
   expect_error("complete " + crown + " --fdi 34 --cap cut -o tooth.ply", 2, "cut");
   expect_error("complete " + crown + " --fdi 34 -o tooth.doc", 2, "doc");
+  expect_error("complete missing.ply --fdi 34 -o tooth.doc", 2, "doc");  // before any work
+  expect_error("complete missing.ply --fdi 34 -o nowhere/tooth.ply", 3, "nowhere");
+  expect_error("complete missing.ply --fdi 34 -o tooth.ply --report nowhere/report.json", 3, "nowhere");
   EXPECT_FALSE(fs::exists(file("tooth.ply")));
 }
 

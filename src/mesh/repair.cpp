@@ -1,0 +1,415 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// M. Attene, M. Campen and L. Kobbelt, "Polygon mesh repairing: an application perspective", ACM Computing Surveys
+// 45(2),
+//   2013: defects and their order. All repairs here are local and leave coordinates alone, so that what is left of the
+//   crown is still the scan.
+
+#include "mesh/repair.hpp"
+
+#include "mesh/adjacency.hpp"
+#include "mesh/diagnosis.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/mesh_checks.hpp"
+#include "mesh/self_intersection.hpp"
+#include "rhizodont/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+namespace rhizodont {
+namespace {
+
+using Ids = std::vector<int>;
+
+std::vector<bool> used_vertices(const TriangleMesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const Triangle& t : mesh.triangles)
+    for (const int v : t) used[static_cast<std::size_t>(v)] = true;
+  return used;
+}
+
+/// Per vertex the lowest one at the same place (-0 = +0).
+Ids first_at_place(const std::vector<Point>& points) {
+  Ids order(points.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto at = [&](int v) -> const Point& { return points[static_cast<std::size_t>(v)]; };
+  std::sort(order.begin(), order.end(), [&](int i, int j) {
+    if (at(i) == at(j)) return i < j;
+    return std::lexicographical_compare(at(i).data(), at(i).data() + 3, at(j).data(), at(j).data() + 3);
+  });
+  Ids first(points.size());
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    const bool same = k > 0 && at(order[k]) == at(order[k - 1]);
+    first[static_cast<std::size_t>(order[k])] = same ? first[static_cast<std::size_t>(order[k - 1])] : order[k];
+  }
+  return first;
+}
+
+/// The mesh under repair. Each step returns the input's numbers of the triangles that it changed.
+class Workpiece {
+ public:
+  explicit Workpiece(const TriangleMesh& mesh) : mesh_(mesh), origin_(mesh.triangles.size()) {
+    std::iota(origin_.begin(), origin_.end(), 0);
+  }
+
+  const TriangleMesh& mesh() const { return mesh_; }
+
+  Ids merge_vertices() {
+    const Ids first = first_at_place(mesh_.vertices);
+    for (Triangle& t : mesh_.triangles)
+      for (std::int32_t& v : t) v = first[static_cast<std::size_t>(v)];
+    return {};
+  }
+
+  /// Repeated corners, no area, or the same corners as an earlier triangle.
+  Ids drop_bad_triangles() {
+    const Diagnosis found = diagnose(mesh_);
+    std::vector<bool> bad(mesh_.triangles.size(), false);
+    for (const Ids* ids : {&found.repeated_index_triangles, &found.degenerate_triangles, &found.duplicate_triangles})
+      for (const int t : *ids) bad[static_cast<std::size_t>(t)] = true;
+    return drop(bad);
+  }
+
+  Ids close_t_junctions();
+  Ids thin_out_crowded_edges();
+  Ids orient();
+
+  Ids keep_largest_piece() {
+    const ConnectedComponents pieces = connected_components(mesh_);
+    if (pieces.count <= 1) return {};
+    std::vector<double> area(static_cast<std::size_t>(pieces.count), 0);
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+      area[static_cast<std::size_t>(pieces.of_triangle[t])] += triangle_area(mesh_, t);
+    const auto largest = std::max_element(area.begin(), area.end()) - area.begin();
+    std::vector<bool> others;
+    for (const int piece : pieces.of_triangle) others.push_back(piece != largest);
+    return drop(others);
+  }
+
+  Ids drop_touching_vertices() { return drop_vertices(diagnose(mesh_).non_manifold_vertices); }
+  Ids drop_spikes(const RepairOptions& options);
+
+  Ids drop_cuts(double most_share) {
+    Ids cutting;
+    for (const auto& [a, b] : self_intersecting_triangles(mesh_))
+      for (const int t : {a, b})
+        for (const int v : mesh_.triangles[static_cast<std::size_t>(t)]) cutting.push_back(v);
+    std::sort(cutting.begin(), cutting.end());
+    cutting.erase(std::unique(cutting.begin(), cutting.end()), cutting.end());
+    const std::vector<bool> used = used_vertices(mesh_);
+    const auto count = static_cast<double>(std::count(used.begin(), used.end(), true));
+    return static_cast<double>(cutting.size()) > most_share * count ? Ids{} : drop_vertices(cutting);
+  }
+
+ private:
+  Ids drop(const std::vector<bool>& which) {
+    Ids dropped;
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < which.size(); ++t) {
+      if (which[t]) {
+        dropped.push_back(origin_[t]);
+        continue;
+      }
+      mesh_.triangles[kept] = mesh_.triangles[t];
+      origin_[kept++] = origin_[t];
+    }
+    mesh_.triangles.resize(kept);
+    origin_.resize(kept);
+    return dropped;
+  }
+
+  Ids drop_vertices(const Ids& vertices) {
+    std::vector<bool> gone(mesh_.vertices.size(), false);
+    for (const int v : vertices) gone[static_cast<std::size_t>(v)] = true;
+    std::vector<bool> which;
+    for (const Triangle& t : mesh_.triangles)
+      which.push_back(std::any_of(t.begin(), t.end(), [&](int v) { return gone[static_cast<std::size_t>(v)]; }));
+    return drop(which);
+  }
+
+  bool lies_on_edge(int v, int a, int b) const;
+
+  TriangleMesh mesh_;
+  Ids origin_;  // per triangle: the input's triangle that it is or is part of
+};
+
+bool Workpiece::lies_on_edge(int v, int a, int b) const {
+  const Point& p = mesh_.vertices[static_cast<std::size_t>(a)];
+  const Eigen::Vector3d along = mesh_.vertices[static_cast<std::size_t>(b)] - p;
+  const Eigen::Vector3d to = mesh_.vertices[static_cast<std::size_t>(v)] - p;
+  constexpr double tolerance = 1e-6;  // of the edge's length: files round coordinates to seven digits
+  return to.cross(along).norm() <= tolerance * along.squaredNorm() && to.dot(along) > 0 &&
+         to.dot(along) < along.squaredNorm();
+}
+
+/// A gap whose border is an edge on one side and a chain of vertices on that edge on the other.
+Ids Workpiece::close_t_junctions() {
+  const EdgeTable table = edge_table(mesh_);
+  Ids next(mesh_.vertices.size(), -1);      // along the border; -1 also where it branches
+  std::vector<std::pair<int, int>> border;  // half-edge, from
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    if (table.triangle_count(e) != 1) continue;
+    const int h = table.half_edges[static_cast<std::size_t>(table.first[e])];
+    int& to = next[static_cast<std::size_t>(half_edge_from(mesh_, h))];
+    to = to == -1 ? half_edge_to(mesh_, h) : -2;
+    border.emplace_back(h, half_edge_from(mesh_, h));
+  }
+  Ids cut;
+  std::vector<bool> is_cut(mesh_.triangles.size(), false);
+  for (const auto& [h, a] : border) {
+    const int b = half_edge_to(mesh_, h);
+    const auto t = static_cast<std::size_t>(h / 3);
+    Ids chain{b};
+    constexpr std::size_t longest = 16;
+    while (chain.size() < longest && next[static_cast<std::size_t>(chain.back())] >= 0 &&
+           lies_on_edge(next[static_cast<std::size_t>(chain.back())], a, b))
+      chain.push_back(next[static_cast<std::size_t>(chain.back())]);
+    if (chain.size() < 2 || next[static_cast<std::size_t>(chain.back())] != a || is_cut[t]) continue;
+    chain.push_back(a);
+    const int apex = mesh_.triangles[t][static_cast<std::size_t>((h + 2) % 3)];
+    for (std::size_t i = 0; i + 1 < chain.size(); ++i) {
+      const Triangle piece{chain[i + 1], chain[i], apex};
+      if (i == 0) {
+        mesh_.triangles[t] = piece;
+      } else {
+        mesh_.triangles.push_back(piece);
+        origin_.push_back(origin_[t]);
+      }
+    }
+    is_cut[t] = true;
+    cut.push_back(origin_[t]);
+  }
+  return cut;
+}
+
+/// Parts of a mesh that hang together over edges with two triangles.
+struct Patches {
+  Ids of_triangle;
+  Ids size;  // triangles per patch
+};
+
+Patches find_patches(const EdgeTable& table, std::size_t triangles) {
+  std::vector<std::array<int, 3>> over(triangles, {-1, -1, -1});
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    if (table.triangle_count(e) != 2) continue;
+    const int g = table.half_edges[static_cast<std::size_t>(table.first[e])];
+    const int h = table.half_edges[static_cast<std::size_t>(table.first[e]) + 1];
+    over[static_cast<std::size_t>(g / 3)][static_cast<std::size_t>(g % 3)] = h / 3;
+    over[static_cast<std::size_t>(h / 3)][static_cast<std::size_t>(h % 3)] = g / 3;
+  }
+  Patches patches{Ids(triangles, -1), {}};
+  for (std::size_t start = 0; start < triangles; ++start) {
+    if (patches.of_triangle[start] >= 0) continue;
+    const int number = static_cast<int>(patches.size.size());
+    patches.of_triangle[start] = number;
+    Ids found{static_cast<int>(start)};
+    for (std::size_t k = 0; k < found.size(); ++k)
+      for (const int n : over[static_cast<std::size_t>(found[k])]) {
+        if (n < 0 || patches.of_triangle[static_cast<std::size_t>(n)] >= 0) continue;
+        patches.of_triangle[static_cast<std::size_t>(n)] = number;
+        found.push_back(n);
+      }
+    patches.size.push_back(static_cast<int>(found.size()));
+  }
+  return patches;
+}
+
+/// Patches end at crowded edges. The smaller ones give way, one after the other, as long as an edge of theirs is
+/// crowded; an edge at which one patch meets itself loses all its triangles.
+Ids Workpiece::thin_out_crowded_edges() {
+  const EdgeTable table = edge_table(mesh_);
+  Ids count(table.size(), 0);
+  std::vector<std::size_t> crowded;
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    count[e] = table.triangle_count(e);
+    if (count[e] > 2) crowded.push_back(e);
+  }
+  if (crowded.empty()) return {};
+  const auto triangles_at = [&](std::size_t e) {
+    Ids ids;
+    for (int k = table.first[e]; k < table.first[e + 1]; ++k)
+      ids.push_back(table.half_edges[static_cast<std::size_t>(k)] / 3);
+    return ids;
+  };
+  const Patches patches = find_patches(table, mesh_.triangles.size());
+  const auto patch_of = [&](int t) {
+    return static_cast<std::size_t>(patches.of_triangle[static_cast<std::size_t>(t)]);
+  };
+  std::vector<std::vector<std::size_t>> crowded_in_patch(patches.size.size());
+  for (const std::size_t e : crowded)
+    for (const int t : triangles_at(e)) crowded_in_patch[patch_of(t)].push_back(e);
+
+  std::vector<std::size_t> order(patches.size.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t x, std::size_t y) { return patches.size[x] < patches.size[y]; });
+  order.pop_back();
+  std::vector<bool> gone(patches.size.size(), false);
+  for (const std::size_t p : order) {
+    const auto& edges = crowded_in_patch[p];
+    if (std::none_of(edges.begin(), edges.end(), [&](std::size_t e) { return count[e] > 2; })) continue;
+    gone[p] = true;
+    for (const std::size_t e : edges) --count[e];
+  }
+  std::vector<bool> which;
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) which.push_back(gone[patch_of(static_cast<int>(t))]);
+  for (const std::size_t e : crowded)
+    if (count[e] > 2)
+      for (const int t : triangles_at(e)) which[static_cast<std::size_t>(t)] = true;
+  return drop(which);
+}
+
+/// Per piece, triangles are turned so that neighbours agree; the side with the larger area stays. A piece that then
+/// faces inwards is turned as a whole.
+Ids Workpiece::orient() {
+  const TriangleAdjacency adjacency = triangle_adjacency(mesh_);
+  const std::size_t count = mesh_.triangles.size();
+  std::vector<bool> seen(count, false), turned(count, false);
+  const auto runs = [&](std::size_t t, int a, int b) {
+    const Triangle& c = mesh_.triangles[t];
+    for (std::size_t i = 0; i < 3; ++i)
+      if (c[i] == a && c[(i + 1) % 3] == b) return true;
+    return false;
+  };
+  for (std::size_t start = 0; start < count; ++start) {
+    if (seen[start]) continue;
+    Ids piece{static_cast<int>(start)};
+    seen[start] = true;
+    double area = 0, turned_area = 0;
+    for (std::size_t k = 0; k < piece.size(); ++k) {
+      const auto t = static_cast<std::size_t>(piece[k]);
+      (turned[t] ? turned_area : area) += triangle_area(mesh_, t);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const int n = adjacency.neighbours[t][i];
+        if (n < 0 || seen[static_cast<std::size_t>(n)]) continue;
+        const Triangle& c = mesh_.triangles[t];
+        const bool same_way = runs(static_cast<std::size_t>(n), c[i], c[(i + 1) % 3]);
+        seen[static_cast<std::size_t>(n)] = true;
+        turned[static_cast<std::size_t>(n)] = turned[t] != same_way;
+        piece.push_back(n);
+      }
+    }
+    if (turned_area > area)
+      for (const int t : piece) turned[static_cast<std::size_t>(t)] = !turned[static_cast<std::size_t>(t)];
+  }
+  const auto turn = [&](std::size_t t) { std::swap(mesh_.triangles[t][1], mesh_.triangles[t][2]); };
+  for (std::size_t t = 0; t < count; ++t)
+    if (turned[t]) turn(t);
+  if (cone_volume(mesh_) < 0)
+    for (std::size_t t = 0; t < count; ++t) {
+      turn(t);
+      turned[t] = !turned[t];
+    }
+  Ids changed;
+  for (std::size_t t = 0; t < count; ++t)
+    if (turned[t]) changed.push_back(origin_[t]);
+  return changed;
+}
+
+Ids Workpiece::drop_spikes(const RepairOptions& options) {
+  std::vector<Ids> neighbours(mesh_.vertices.size());
+  for (const Triangle& t : mesh_.triangles)
+    for (std::size_t i = 0; i < 3; ++i)
+      for (const std::size_t j : {(i + 1) % 3, (i + 2) % 3}) neighbours[static_cast<std::size_t>(t[i])].push_back(t[j]);
+  Ids spikes;
+  for (std::size_t v = 0; v < neighbours.size(); ++v) {
+    Ids& ring = neighbours[v];
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+    if (ring.size() < 3) continue;
+    Point mean = Point::Zero();
+    for (const int w : ring) mean += mesh_.vertices[static_cast<std::size_t>(w)] / static_cast<double>(ring.size());
+    double radius = 0;
+    for (const int w : ring)
+      radius += (mesh_.vertices[static_cast<std::size_t>(w)] - mean).norm() / static_cast<double>(ring.size());
+    const double height = (mesh_.vertices[v] - mean).norm();
+    if (height > options.spike_height * radius && height > options.spike_least_mm)
+      spikes.push_back(static_cast<int>(v));
+  }
+  return drop_vertices(spikes);
+}
+
+/// Does the steps one after the other and keeps the book of what they did.
+class Repair {
+ public:
+  Repair(const TriangleMesh& mesh, const RepairOptions& options) : input_(mesh), options_(options), piece_(mesh) {}
+
+  RepairedMesh run() {
+    for (int round = 0; round < options_.rounds && do_all_steps(); ++round) {
+    }
+    if (piece_.mesh().triangles.empty())
+      throw InputError("Nothing is left of the crown once its defects are repaired.");
+    Submesh rest = compact(piece_.mesh());
+    keep_to_the_point(rest.old_vertices);
+    return {std::move(rest.mesh), std::move(rest.old_vertices), std::move(steps_)};
+  }
+
+ private:
+  bool do_all_steps() {
+    bool any = false;
+    const auto step = [&](const char* action, const std::function<Ids()>& work) { any |= note(action, work); };
+    step("vertex merged with another one at the same place", [&] { return piece_.merge_vertices(); });
+    step("triangle dropped: without area, or there twice", [&] { return piece_.drop_bad_triangles(); });
+    step("triangle cut at vertices on its edge (T-junction)", [&] { return piece_.close_t_junctions(); });
+    step("dropped at an edge with more than two triangles", [&] { return piece_.thin_out_crowded_edges(); });
+    step("separate piece dropped", [&] { return piece_.keep_largest_piece(); });
+    step("triangle turned over", [&] { return piece_.orient(); });
+    step("dropped where the surface touches itself", [&] { return piece_.drop_touching_vertices(); });
+    step("spike dropped", [&] { return piece_.drop_spikes(options_); });
+    // The costly step waits until the others have nothing left to do.
+    if (!any) step("dropped where the surface cuts itself", [&] { return piece_.drop_cuts(options_.most_cut_share); });
+    return any;
+  }
+
+  bool note(const char* action, const std::function<Ids()>& work) {
+    const std::vector<bool> before = used_vertices(piece_.mesh());
+    Ids triangles = work();
+    const std::vector<bool> after = used_vertices(piece_.mesh());
+    Ids vertices;
+    for (std::size_t v = 0; v < before.size(); ++v)
+      if (before[v] && !after[v]) vertices.push_back(static_cast<int>(v));
+    if (triangles.empty() && vertices.empty()) return false;
+    auto same = std::find_if(steps_.begin(), steps_.end(), [&](const RepairStep& s) { return s.action == action; });
+    if (same == steps_.end()) same = steps_.insert(steps_.end(), {action, {}, {}});
+    same->vertices.insert(same->vertices.end(), vertices.begin(), vertices.end());
+    same->triangles.insert(same->triangles.end(), triangles.begin(), triangles.end());
+    return true;
+  }
+
+  /// Lists only those triangles all of whose corners' places are left: the others went with their corners.
+  void keep_to_the_point(const Ids& kept_vertices) {
+    const Ids place = first_at_place(input_.vertices);
+    std::vector<bool> is_left(input_.vertices.size(), false);
+    for (const int v : kept_vertices) is_left[static_cast<std::size_t>(place[static_cast<std::size_t>(v)])] = true;
+    for (RepairStep& step : steps_) {
+      std::sort(step.vertices.begin(), step.vertices.end());
+      std::sort(step.triangles.begin(), step.triangles.end());
+      step.triangles.erase(std::unique(step.triangles.begin(), step.triangles.end()), step.triangles.end());
+      std::erase_if(step.triangles, [&](int t) {
+        const Triangle& c = input_.triangles[static_cast<std::size_t>(t)];
+        return std::any_of(c.begin(), c.end(), [&](int v) {
+          return !is_left[static_cast<std::size_t>(place[static_cast<std::size_t>(v)])];
+        });
+      });
+    }
+  }
+
+  const TriangleMesh& input_;
+  RepairOptions options_;
+  Workpiece piece_;
+  std::vector<RepairStep> steps_;
+};
+
+}  // namespace
+
+RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options) {
+  require_valid_indices(mesh);
+  require_finite(mesh.vertices);
+  return Repair(mesh, options).run();
+}
+
+}  // namespace rhizodont

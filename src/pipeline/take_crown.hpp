@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "completion/frame.hpp"
+#include "rhizodont/complete.hpp"
+#include "skirt/skirt.hpp"
+
+namespace rhizodont {
+
+/// What the tooth will keep of an input: in millimetres, repaired if asked for, open at the base, its border made of
+/// simple loops. Vertex numbers in the result are the input's. Notes in the record what was kept, dropped and repaired.
+/// Throws InputError where there is no crown that a root can be joined to.
+KeptCrown take_crown(const TriangleMesh& input, const Atlas& atlas, const CompleteOptions& options,
+                     CompletionRecord& record);
+
+}  // namespace rhizodont
