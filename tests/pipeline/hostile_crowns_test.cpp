@@ -47,8 +47,9 @@ void expect_promises(const TriangleMesh& crown, const CompletedTooth& tooth, con
   for (const DroppedCrownVertex& d : tooth.record.dropped_vertices) EXPECT_TRUE(told.insert(d.vertex).second);
   EXPECT_EQ(told.size(), crown.vertices.size());
   // Numbers that are none are written as null; so are an unset length and the open upper end of a histogram.
-  const auto written = nlohmann::json::parse(completion_report(tooth, options, "crown.ply", std::string(64, '0')));
-  for (const auto& [place, value] : written.flatten().items())
+  const nlohmann::json written =
+      nlohmann::json::parse(completion_report(tooth, options, "crown.ply", std::string(64, '0'))).flatten();
+  for (const auto& [place, value] : written.items())
     EXPECT_TRUE(!value.is_null() || place == "/options/steering/root_length_mm" ||
                 place == "/promises/crown/deviation/bins_up_to_mm/3")
         << place;
