@@ -13,6 +13,9 @@ namespace rhizodont {
 struct JoinOptions {
   DelaunayMeshOptions delaunay;      ///< how the crown is made a Delaunay mesh
   RestrictedVoronoiOptions voronoi;  ///< how the restricted Voronoi diagram is computed
+  double least_distance = 2e-3;      ///< relative to the crown's mean edge length, >= 0: sites nearer than this to an
+                                     ///< earlier one get no cell. Cells as thin as needle triangles cost exact
+                                     ///< arithmetic and meet nothing but each other
 };
 
 /// Crown and root joined as the dual of a restricted Voronoi diagram. Sites are numbered: the crown's vertices in their
