@@ -5,6 +5,7 @@
 #include "completion/frame.hpp"
 #include "fusion/crown_border.hpp"
 #include "fusion/edge_lengths.hpp"
+#include "fusion/fuse.hpp"
 #include "fusion/join.hpp"
 #include "fusion/root_sites.hpp"
 #include "fusion/separate.hpp"
@@ -61,8 +62,10 @@ CrownCase prepare(const TriangleMesh& input, int fdi, const CompletionModels::Co
   const auto is_root =
       separate_crown_and_root(result.surface, crown_distances(result.surface, result.crown, border), axis);
   const SurfaceWalk walk(result.surface);
-  result.root = root_sites(walk, is_root, result.crown, border,
-                           edge_lengths(result.crown, border, mean_edge_length(result.surface)));
+  const FuseOptions fuse;
+  const EdgeLengths lengths(result.crown, border, mean_edge_length(result.surface), fuse.edge_growth,
+                            fuse.edge_shrinkage);
+  result.root = root_sites(walk, is_root, result.crown, border, lengths);
   return result;
 }
 
