@@ -22,8 +22,8 @@ struct IsosurfaceOptions {
   double max_displacement = 0.62;  ///< (0, 1], times e: farthest a vertex may be moved by the projection
   bool relax =
       true;  ///< after the projection, slide vertices of triangles beyond the promised angles along the surface
-  bool as_ball = false;     ///< cut bridges or fill tunnels as thin as the tiling, until the surface is a sphere
-  double max_change = 8.0;  ///< mm^2, >= 0: section of bridges and tunnels that may be closed for that
+  bool as_ball = false;          ///< cut bridges or fill tunnels as thin as the tiling, until the surface is a sphere
+  double max_change = 8.0;       ///< mm^2, >= 0: section of bridges and tunnels that may be closed for that
   bool every_component = false;  ///< keep all parts; for `marching_tetrahedra` only
   std::size_t max_cells = 20'000'000;  ///< cut tetrahedra before the surface is taken for unbounded
 };
@@ -61,9 +61,9 @@ Isosurface mid_normal(const ScalarField& field, double iso, std::span<const Poin
 Isosurface grad_normal(const ScalarField& field, double iso, std::span<const Point> seeds,
                        const IsosurfaceOptions& options = {});
 
-/// The plain isosurface: a vertex on each cut edge of the tiling, where the field would pass the value if it were linear
-/// along the edge, and the triangles between them as they come. With `every_component` all parts that the seeds touch.
-/// Triangles may be needles. Parameters and errors as for `mid_normal`; `as_ball` is not looked at.
+/// The plain isosurface: a vertex on each cut edge of the tiling, where the field would pass the value if it were
+/// linear along the edge, and the triangles between them as they come. With `every_component` all parts that the seeds
+/// touch. Triangles may be needles. Parameters and errors as for `mid_normal`; `as_ball` is not looked at.
 TriangleMesh marching_tetrahedra(const ScalarField& field, double iso, std::span<const Point> seeds,
                                  const IsosurfaceOptions& options = {});
 

@@ -8,9 +8,9 @@ namespace rhizodont {
 
 struct CrownFitOptions {
   double tolerance = 0.0075;  ///< mm, > 0: triangles are split until no crown vertex within reach is farther away
-  double reach = 0.3;        ///< mm, > 0: farthest that a vertex is moved onto the crown
-  int fading_rings = 3;      ///< >= 0: rings of vertices beyond the crown over which the moves fade out
-  int most_rounds = 8;       ///< >= 0: of splitting
+  double reach = 0.3;         ///< mm, > 0: farthest that a vertex is moved onto the crown
+  int fading_rings = 3;       ///< >= 0: rings of vertices beyond the crown over which the moves fade out
+  int most_rounds = 8;        ///< >= 0: of splitting
 };
 
 /// What the fit did, and how near the surface came.
