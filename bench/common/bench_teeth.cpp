@@ -7,6 +7,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <exception>
+
 namespace rhizodont {
 
 std::vector<BenchTooth> load_validation_teeth(const std::filesystem::path& data_folder) {
@@ -21,6 +24,27 @@ std::vector<BenchTooth> load_validation_teeth(const std::filesystem::path& data_
     }
   if (teeth.empty()) throw InputError(fmt::format("There are no validation teeth in {}.", data_folder.string()));
   return teeth;
+}
+
+BenchTooth load_largest_validation_tooth(const std::filesystem::path& data_folder) {
+  const std::vector<BenchTooth> teeth = load_validation_teeth(data_folder);
+  return *std::max_element(teeth.begin(), teeth.end(), [](const BenchTooth& a, const BenchTooth& b) {
+    return a.crown.vertices.size() < b.crown.vertices.size();
+  });
+}
+
+int run_on_data_folder(int argc, char** argv, const std::function<void(const std::filesystem::path&)>& benchmark) {
+  if (argc != 2) {
+    fmt::print(stderr, "Usage: {} DATA_FOLDER\n", argv[0]);
+    return 2;
+  }
+  try {
+    benchmark(argv[1]);
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
+  }
 }
 
 }  // namespace rhizodont

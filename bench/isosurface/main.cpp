@@ -14,7 +14,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <exception>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -22,8 +21,6 @@
 namespace {
 
 using namespace rhizodont;
-
-constexpr int molar = 36;  // the largest of the validation teeth
 
 /// An ellipsoid around the origin; positive inside, not a distance.
 ScalarField ellipsoid(const Eigen::Vector3d& radii) {
@@ -109,25 +106,11 @@ void print_growth(const BenchTooth& tooth) {
              1e6 * growth.seconds_per_unit, 100 * growth.largest_deviation);
 }
 
-int run(const char* data_folder) {
-  print_angles();
-  const auto teeth = load_validation_teeth(data_folder);
-  const auto found = std::find_if(teeth.begin(), teeth.end(), [](const auto& tooth) { return tooth.fdi == molar; });
-  print_growth(found == teeth.end() ? teeth.front() : *found);
-  return 0;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    fmt::print(stderr, "Usage: {} DATA_FOLDER\n", argv[0]);
-    return 2;
-  }
-  try {
-    return run(argv[1]);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  return run_on_data_folder(argc, argv, [](const std::filesystem::path& data_folder) {
+    print_angles();
+    print_growth(load_largest_validation_tooth(data_folder));
+  });
 }

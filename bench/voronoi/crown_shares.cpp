@@ -10,15 +10,13 @@
 #include "fusion/root_sites.hpp"
 #include "fusion/separate.hpp"
 #include "fusion/surface_walk.hpp"
-#include "isosurface/guiding_surface.hpp"
-#include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
-#include "pipeline/closed_crown.hpp"
+#include "pipeline/fitted_surface.hpp"
 #include "pipeline/guiding_cloud.hpp"
 #include "pipeline/models.hpp"
+#include "pipeline/take_crown.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
-#include "skirt/skirt.hpp"
 #include "tables.hpp"
 #include "voronoi/delaunay_mesh.hpp"
 #include "voronoi/restricted_voronoi.hpp"
@@ -30,7 +28,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <span>
 #include <string>
 
 namespace rhizodont {
@@ -44,19 +41,16 @@ struct CrownCase {
 };
 
 CrownCase prepare(const TriangleMesh& input, int fdi, const CompletionModels::Content& models) {
+  CompleteOptions options;
+  options.fdi = fdi;
+  CompletionRecord record;
   CrownCase result;
-  std::vector<bool> keep(input.triangles.size(), true);
-  if (diagnose(input).border_edges.empty()) {
-    const Cap cap = recognise_cap(input, models.atlas, fdi);
-    for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = !cap.is_cap[t];
-  }
-  result.crown = keep_crown(input, keep, "cap").mesh;
+  result.crown = take_crown(input, models.atlas, options, record).mesh;
   const CrownFrame frame =
       canonical_frame(result.crown, fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))]);
   const PredictedTooth predicted = complete_points(result.crown, fdi, frame.frame, models.network);
-  const GuidingCloud cloud = assemble_guiding_cloud(result.crown, predicted.cloud);
-  const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));
-  result.surface = guiding_surface(cloud.samples, cloud.confidence, seeds).surface.mesh;
+  result.surface =
+      fitted_guiding_surface(assemble_guiding_cloud(result.crown, predicted.cloud), result.crown, options.e).mesh;
   const Eigen::Vector3d axis = frame.frame.direction_to_world(Eigen::Vector3d::UnitZ());
   const CrownBorder border = find_crown_border(result.crown);
   const auto is_root =
@@ -73,6 +67,7 @@ CrownCase prepare(const TriangleMesh& input, int fdi, const CompletionModels::Co
 struct Reasons {
   int crown_site = 0;        // no Voronoi edge: vertices of the crown are nearer to its axis everywhere
   int root_site = 0;         // likewise with a vertex of the root on one side at least
+  int crowded = 0;           // a vertex so near to another that it got no cell
   int no_crossing = 0;       // the guiding surface does not cross the axis
   std::vector<double> gaps;  // mm, ascending: it does, so far from the Voronoi edge
 };
@@ -97,14 +92,36 @@ double gap_to_edge(const TriangleMesh& surface, const VoronoiEdge& edge) {
   return gap;
 }
 
+/// A site of the diagram by its number among all sites, -1 for one that got no cell.
+struct Diagram {
+  std::vector<Point> sites;
+  std::vector<std::int32_t> number;
+
+  explicit Diagram(const Joining& joining) : number(joining.sites.size(), -1) {
+    for (std::size_t i = 0; i < joining.sites.size(); ++i) {
+      if (!joining.in_diagram[i]) continue;
+      number[i] = static_cast<std::int32_t>(sites.size());
+      sites.push_back(joining.sites[i]);
+    }
+  }
+};
+
 void examine_pieces(const CrownCase& c, const DelaunayMesh& delaunay, const Joining& joining, Share& share) {
-  const int first_root = joining.crown_vertices + joining.steiner_points;
+  const Diagram diagram(joining);
+  const auto first_root = std::count(
+      joining.in_diagram.begin(), joining.in_diagram.begin() + joining.crown_vertices + joining.steiner_points, true);
   constexpr std::size_t every = 5;  // of the pieces that are in the dual is tested
   for (std::size_t i = 0; i < delaunay.mesh.triangles.size(); ++i) {
     const Triangle t = lowest_first(delaunay.mesh.triangles[i]);
     const bool in_dual = std::binary_search(joining.triangles.begin(), joining.triangles.end(), t);
     if (in_dual && i % every != 0) continue;
-    const VoronoiEdge edge = voronoi_edge(joining.sites, t);
+    const Triangle piece{diagram.number[static_cast<std::size_t>(t[0])], diagram.number[static_cast<std::size_t>(t[1])],
+                         diagram.number[static_cast<std::size_t>(t[2])]};
+    if (std::min({piece[0], piece[1], piece[2]}) < 0) {
+      ++share.reasons.crowded;
+      continue;
+    }
+    const VoronoiEdge edge = voronoi_edge(diagram.sites, piece);
     const double gap = gap_to_edge(c.surface, edge);
     ++share.tested;
     constexpr double rounding = 1e-9;  // mm: the interval test is not exact
@@ -153,6 +170,7 @@ void add(const Share& s, Share& total) {
   total.disagreeing += s.disagreeing;
   total.reasons.crown_site += s.reasons.crown_site;
   total.reasons.root_site += s.reasons.root_site;
+  total.reasons.crowded += s.reasons.crowded;
   total.reasons.no_crossing += s.reasons.no_crossing;
   total.reasons.gaps.insert(total.reasons.gaps.end(), s.reasons.gaps.begin(), s.reasons.gaps.end());
   std::sort(total.reasons.gaps.begin(), total.reasons.gaps.end());
@@ -161,10 +179,10 @@ void add(const Share& s, Share& total) {
 void print_row(const std::string& name, const Share& s) {
   const auto& gaps = s.reasons.gaps;
   const std::string beside = gaps.empty() ? "0" : fmt::format("{} ({:.3f})", gaps.size(), gaps[gaps.size() / 2]);
-  fmt::print("| {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {} | {} | {} | {} | {} | {} |\n", name, s.triangles,
+  fmt::print("| {} | {} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {} | {} | {} | {} | {} | {} | {} |\n", name, s.triangles,
              s.steiner, s.edges_left, percent(s.strong, s.triangles), percent(s.direct, s.triangles),
-             percent(s.both, s.strong), s.reasons.crown_site, s.reasons.root_site, beside, s.reasons.no_crossing,
-             s.tested, s.disagreeing);
+             percent(s.both, s.strong), s.reasons.crown_site, s.reasons.root_site, s.reasons.crowded, beside,
+             s.reasons.no_crossing, s.tested, s.disagreeing);
   std::fflush(stdout);
 }
 
@@ -176,10 +194,11 @@ void print_crown_shares(const std::filesystem::path& data_folder) {
       "## Crown triangles given by the dual\n\n"
       "Strong: given by the dual on the crown's own surface, after Steiner points. Direct: given on the guiding "
       "surface. Missing pieces (triangles cut by Steiner points) by reason: no Voronoi edge because of other "
-      "sites of the crown, or of the root; guiding surface beside the edge (median distance), or absent.\n\n"
+      "sites of the crown, or of the root; a vertex without a cell because another crowds it; guiding surface beside "
+      "the edge (median distance), or absent.\n\n"
       "| Crown | triangles | Steiner points | edges left | strong % | direct % | direct of strong % | crown's "
-      "sites | root's sites | beside (mm) | absent | interval test: pieces | against the dual |\n"
-      "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
+      "sites | root's sites | crowded | beside (mm) | absent | interval test: pieces | against the dual |\n"
+      "|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|\n");
   for (const char* group : {"validation", "crowns/patient0", "crowns/patient1"}) {
     Share total;
     for (int fdi = 11; fdi <= 48; ++fdi) {

@@ -5,34 +5,9 @@
 
 #include "tables.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <exception>
-
-namespace {
-
-constexpr int molar = 36;  // the largest of the validation teeth
-
-int run(const char* data_folder) {
-  const auto teeth = rhizodont::load_validation_teeth(data_folder);
-  const auto found = std::find_if(teeth.begin(), teeth.end(), [](const auto& tooth) { return tooth.fdi == molar; });
-  rhizodont::print_diagram_times(found == teeth.end() ? teeth.front() : *found);
-  rhizodont::print_crown_shares(data_folder);
-  return 0;
-}
-
-}  // namespace
-
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    fmt::print(stderr, "Usage: {} DATA_FOLDER\n", argv[0]);
-    return 2;
-  }
-  try {
-    return run(argv[1]);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return 1;
-  }
+  return rhizodont::run_on_data_folder(argc, argv, [](const std::filesystem::path& data_folder) {
+    rhizodont::print_diagram_times(rhizodont::load_largest_validation_tooth(data_folder));
+    rhizodont::print_crown_shares(data_folder);
+  });
 }

@@ -2,17 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "atlas/crown_features.hpp"
 
+#include "mesh/smooth_functions.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 namespace rhizodont {
 namespace {
-
-double soft_plus(double x, double width) {
-  const double t = x / width;
-  return width * (t > 30 ? t : std::log1p(std::exp(t)));
-}
 
 double crown_top(const SyntheticTooth& tooth) {
   double top = 0;

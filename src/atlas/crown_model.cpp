@@ -12,6 +12,7 @@
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/sampling.hpp"
+#include "mesh/smooth_functions.hpp"
 #include "rhizodont/error.hpp"
 
 #include <Eigen/Dense>
@@ -23,16 +24,6 @@
 
 namespace rhizodont {
 namespace {
-
-double soft_plus(double x, double width) {
-  const double t = x / width;
-  return width * (t > 30 ? t : std::log1p(std::exp(t)));
-}
-
-double fade(double x) {
-  x = std::clamp(x, 0.0, 1.0);
-  return 1 - x * x * (3 - 2 * x);
-}
 
 std::vector<float> floats(const TensorFile& file, const std::string& name, std::size_t dimensions,
                           const std::filesystem::path& path) {
@@ -257,12 +248,12 @@ Carrier carrier_of(const FamilyTemplate& tooth, double neck) {
   for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v) {
     const Point& p = tooth.mesh.vertices[v];
     const double h = p.z() - tooth.junction(p.x(), p.y());
-    const double across = fade((neck - h) / 8.0);
+    const double across = 1 - smooth_step((neck - h) / 8.0);
     if (across <= 0) continue;
     carrier.vertex.push_back(v);
     carrier.points.emplace_back(p.x(), p.y(), p.z() + neck + soft_plus(h - neck, 0.5) - h);
     carrier.across.push_back(across);
-    carrier.along.push_back(fade((neck - h) / 4.0));
+    carrier.along.push_back(1 - smooth_step((neck - h) / 4.0));
   }
   return carrier;
 }

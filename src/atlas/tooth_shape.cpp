@@ -6,6 +6,8 @@
 // Mean dimensions: Wheeler; Ash and Nelson, "Wheeler's Dental Anatomy".
 #include "atlas/tooth_shape.hpp"
 
+#include "mesh/smooth_functions.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,16 +15,6 @@
 
 namespace rhizodont {
 namespace {
-
-double soft_plus(double x, double width) {
-  const double t = x / width;
-  return width * (t > 30 ? t : std::log1p(std::exp(t)));
-}
-
-double smooth_step(double x) {
-  x = std::clamp(x, 0.0, 1.0);
-  return x * x * (3 - 2 * x);
-}
 
 Eigen::Vector3d unit(RandomStream& random) {
   const double x = random.normal(), y = random.normal(), z = random.normal();

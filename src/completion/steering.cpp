@@ -6,6 +6,7 @@
 #include "completion/steering.hpp"
 
 #include "mesh/adjacency.hpp"
+#include "mesh/smooth_functions.hpp"
 #include "rhizodont/error.hpp"
 
 #include <fmt/format.h>
@@ -18,12 +19,6 @@
 
 namespace rhizodont {
 namespace {
-
-/// 0 before 0, 1 after 1, without a kink.
-double smooth_step(double t) {
-  t = std::clamp(t, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
-}
 
 void require_angle(double degrees, double most, const char* name) {
   if (!(std::abs(degrees) <= most))

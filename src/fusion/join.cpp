@@ -40,8 +40,12 @@ Joining join_crown_and_root(const TriangleMesh& crown, const std::vector<Point>&
   joining.sites.insert(joining.sites.end(), root_vertices.begin(), root_vertices.end());
 
   const std::vector<int> used = uncrowded_sites(joining.sites, options.least_distance * mean_edge_length(crown));
+  joining.in_diagram.assign(joining.sites.size(), false);
   std::vector<Point> positions;
-  for (const int i : used) positions.push_back(joining.sites[static_cast<std::size_t>(i)]);
+  for (const int i : used) {
+    joining.in_diagram[static_cast<std::size_t>(i)] = true;
+    positions.push_back(joining.sites[static_cast<std::size_t>(i)]);
+  }
   RestrictedVoronoi voronoi = restricted_voronoi(positions, guiding_surface, options.voronoi);
   joining.triangles = std::move(voronoi.triangles);
   for (Triangle& t : joining.triangles)

@@ -28,7 +28,8 @@ struct Joining {
   int crown_triangles_direct = 0;   ///< crown triangles all of whose pieces are in the dual
   std::vector<bool> crown_in_dual;  ///< per crown triangle
   int non_delaunay_edges_left = 0;  ///< see DelaunayMesh::edges_left
-  int sites_without_cell = 0;
+  std::vector<bool> in_diagram;     ///< per site: false if it was left out because another one crowds it
+  int sites_without_cell = 0;       ///< left out, or their cells do not meet the guiding surface
 };
 
 /// Joins the crown with root vertices on the guiding surface (paper, 3.5): the crown is made a Delaunay mesh with

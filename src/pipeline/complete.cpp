@@ -9,11 +9,10 @@
 #include "completion/steering.hpp"
 #include "completion/uncertainty.hpp"
 #include "fusion/fuse.hpp"
-#include "isosurface/guiding_surface.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
-#include "pipeline/crown_fit.hpp"
+#include "pipeline/fitted_surface.hpp"
 #include "pipeline/guiding_cloud.hpp"
 #include "pipeline/models.hpp"
 #include "pipeline/stage_clock.hpp"
@@ -27,7 +26,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <span>
 
 namespace rhizodont {
 namespace {
@@ -64,18 +62,6 @@ CrownFrame find_frame(const TriangleMesh& crown, const Atlas& atlas, const Compl
   record.frame_centre = frame.frame.centre;
   record.frame_mirrored = frame.frame.mirrored;
   return frame;
-}
-
-/// The guiding surface M: indicator function of the cloud, meshed by GradNormal and drawn onto the crown.
-TriangleMesh build_guiding_surface(const GuidingCloud& cloud, const TriangleMesh& crown, double e) {
-  GuidingSurfaceOptions options;
-  options.isosurface.e = e;
-  const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));
-  TriangleMesh surface = guiding_surface(cloud.samples, cloud.confidence, seeds, options).surface.mesh;
-  CrownFitOptions fit;
-  fit.tolerance = 0.015 * e;
-  fit_to_crown(surface, crown, fit);
-  return surface;
 }
 
 void note_guiding_distance(const TriangleMesh& crown, const TriangleMesh& surface, CompletionRecord& record) {
@@ -188,10 +174,15 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   clock.begin("orientation");
   const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, predicted.cloud);
   clock.begin("guiding surface");
-  TriangleMesh surface = build_guiding_surface(cloud, crown.mesh, options.e);
+  auto [surface, fit] = fitted_guiding_surface(cloud, crown.mesh, options.e);
   for (std::vector<Point>* points : {&surface.vertices, &predicted.cloud.points})
     steer_root(*points, crown.mesh, frame.frame, record.fdi, options.steering);
   note_guiding_distance(crown.mesh, surface, record);
+  if (fit.undone)
+    record.warnings.push_back(fmt::format(
+        "Drawn onto the crown the guiding surface would have met itself, so it stays up to {:.2f} mm off the "
+        "crown; look at the joint.",
+        record.guiding_distance_max));
 
   clock.begin("joining");
   FuseOptions fuse;

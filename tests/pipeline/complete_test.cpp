@@ -5,6 +5,7 @@
 
 #include "mesh/geometry.hpp"
 #include "mesh/test_meshes.hpp"
+#include "pipeline/product_models.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
 
@@ -18,21 +19,13 @@
 namespace rhizodont {
 namespace {
 
-const std::filesystem::path source_folder = RHIZODONT_SOURCE_DIR;
+using test::for_tooth;
+using test::models;
+using test::source_folder;
+
 const std::filesystem::path shared_data = source_folder / "../shared/data";
 
-const CompletionModels& models() {
-  static const CompletionModels loaded = CompletionModels::load(source_folder / "models");
-  return loaded;
-}
-
 TriangleMesh sample(const std::string& name) { return load_mesh(source_folder / "samples" / name).mesh; }
-
-CompleteOptions for_tooth(int fdi) {
-  CompleteOptions options;
-  options.fdi = fdi;
-  return options;
-}
 
 /// Vertex i of the tooth is vertex kept_vertices[i] of the crown, bit for bit, and so are the first triangles.
 void expect_crown_first(const TriangleMesh& crown, const CompletedTooth& tooth) {

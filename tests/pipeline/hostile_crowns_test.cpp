@@ -6,6 +6,7 @@
 #include "common/hostile_crowns.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/test_meshes.hpp"
+#include "pipeline/product_models.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
@@ -14,22 +15,16 @@
 
 #include <cmath>
 #include <exception>
-#include <filesystem>
 #include <set>
 
 namespace rhizodont {
 namespace {
 
-const std::filesystem::path source_folder = RHIZODONT_SOURCE_DIR;
-
-const CompletionModels& models() {
-  static const CompletionModels loaded = CompletionModels::load(source_folder / "models");
-  return loaded;
-}
+using test::models;
+using test::source_folder;
 
 CompleteOptions coarse(int fdi) {
-  CompleteOptions options;
-  options.fdi = fdi;
+  CompleteOptions options = test::for_tooth(fdi);
   options.e = 1;
   return options;
 }

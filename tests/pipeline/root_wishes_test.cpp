@@ -1,35 +1,27 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <filesystem>
-
+#include "pipeline/product_models.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
 namespace rhizodont {
 namespace {
 
-const std::filesystem::path source_folder = RHIZODONT_SOURCE_DIR;
-
-const CompletionModels& models() {
-  static const CompletionModels loaded = CompletionModels::load(source_folder / "models");
-  return loaded;
-}
+using test::models;
+using test::source_folder;
 
 const TriangleMesh& crown() {
   static const TriangleMesh loaded = load_mesh(source_folder / "samples" / "crown_34.ply").mesh;
   return loaded;
 }
 
-CompleteOptions premolar() {
-  CompleteOptions options;
-  options.fdi = 34;
-  return options;
-}
+CompleteOptions premolar() { return test::for_tooth(34); }
 
 const CompletedTooth& expected() {
   static const CompletedTooth tooth = complete_tooth(crown(), models(), premolar());
