@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // The figures of "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", tables 3 and 5, on
-// the validation teeth, and what the steps of joining cost. usage: bench_fusion DATA_FOLDER MODELS_FOLDER [REPEATS=3]
+// the validation teeth, and the time of each stage and step. usage: bench_fusion DATA_FOLDER MODELS_FOLDER [REPEATS=5]
 
 #include "common/bench_teeth.hpp"
+#include "common/stopwatch.hpp"
 #include "rhizodont/complete.hpp"
 
 #include <fmt/format.h>
@@ -13,8 +14,8 @@
 #include <array>
 #include <cstdlib>
 #include <exception>
-#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -23,9 +24,14 @@ using namespace rhizodont;
 
 struct Row {
   int fdi = 0;
-  CompletedTooth tooth;
-  std::vector<double> best_seconds;  // of the steps, as in the record, then of joining as a whole
+  CompletedTooth tooth;         // its record has the shortest time of each stage and step
+  double geometry_seconds = 0;  // shortest in one run
+  double whole_seconds = 0;     // likewise, with the networks
 };
+
+void take_shortest(const std::vector<StageRecord>& run, std::vector<StageRecord>& best) {
+  for (std::size_t i = 0; i < best.size(); ++i) best[i].seconds = std::min(best[i].seconds, run[i].seconds);
+}
 
 Row complete_often(const BenchTooth& input, const CompletionModels& models, int repeats) {
   CompleteOptions options;
@@ -33,13 +39,19 @@ Row complete_often(const BenchTooth& input, const CompletionModels& models, int 
   Row row;
   row.fdi = input.fdi;
   for (int i = 0; i < repeats; ++i) {
-    row.tooth = complete_tooth(input.crown, models, options);
-    std::vector<double> seconds;
-    for (const StageRecord& step : row.tooth.record.joining_steps) seconds.push_back(step.seconds);
-    for (const StageRecord& stage : row.tooth.record.stages)
-      if (stage.name == "joining") seconds.push_back(stage.seconds);
-    if (i == 0) row.best_seconds = seconds;
-    for (std::size_t k = 0; k < seconds.size(); ++k) row.best_seconds[k] = std::min(row.best_seconds[k], seconds[k]);
+    CompletedTooth tooth = complete_tooth(input.crown, models, options);
+    double geometry = 0, whole = 0;
+    for (const StageRecord& stage : tooth.record.stages) {
+      whole += stage.seconds;
+      if (stage.name != "completion network") geometry += stage.seconds;
+    }
+    row.geometry_seconds = i == 0 ? geometry : std::min(row.geometry_seconds, geometry);
+    row.whole_seconds = i == 0 ? whole : std::min(row.whole_seconds, whole);
+    if (i > 0) {
+      take_shortest(row.tooth.record.stages, tooth.record.stages);
+      take_shortest(row.tooth.record.joining_steps, tooth.record.joining_steps);
+    }
+    row.tooth = std::move(tooth);
   }
   return row;
 }
@@ -106,36 +118,46 @@ void print_deviation(const std::vector<Row>& rows) {
   for (const auto& p : paper) fmt::print("| paper | {} | {} | {} | {} | {} | | | |\n", p[0], p[1], p[2], p[3], p[4]);
 }
 
-void print_seconds(const std::vector<Row>& rows, int repeats) {
-  fmt::print("\n## Seconds of joining, best of {}\n\n| tooth |", repeats);
-  const auto& steps = rows.front().tooth.record.joining_steps;
-  for (const StageRecord& step : steps) fmt::print(" {} |", step.name);
-  fmt::print(" all |\n|---|");
-  for (std::size_t i = 0; i <= steps.size(); ++i) fmt::print("---|");
-  fmt::print("\n");
+void print_seconds(const std::string& title, const std::vector<Row>& rows,
+                   std::vector<StageRecord> CompletionRecord::*stages) {
+  fmt::print("\n## {}\n\n| tooth |", title);
+  const std::size_t columns = (rows.front().tooth.record.*stages).size();
+  for (const StageRecord& stage : rows.front().tooth.record.*stages) fmt::print(" {} |", stage.name);
+  fmt::print("\n|---|");
+  for (std::size_t i = 0; i < columns; ++i) fmt::print("---|");
   for (const Row& row : rows) {
-    fmt::print("| {} |", row.fdi);
-    for (const double s : row.best_seconds) fmt::print(" {:.3f} |", s);
-    fmt::print("\n");
+    fmt::print("\n| {} |", row.fdi);
+    for (const StageRecord& stage : row.tooth.record.*stages) fmt::print(" {:.3f} |", stage.seconds);
   }
+  fmt::print("\n");
+}
+
+void print_sums(const std::vector<Row>& rows) {
+  fmt::print("\n## Seconds of whole runs, and peak memory\n\n| tooth | geometry | with the network |\n|---|---|---|\n");
+  for (const Row& row : rows)
+    fmt::print("| {} | {:.3f} | {:.3f} |\n", row.fdi, row.geometry_seconds, row.whole_seconds);
+  fmt::print("\nPeak memory of the process, networks loaded: {:.0f} MB.\n", peak_memory_mb());
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    fmt::print(stderr, "usage: bench_fusion DATA_FOLDER MODELS_FOLDER [REPEATS=3]\n");
+    fmt::print(stderr, "usage: bench_fusion DATA_FOLDER MODELS_FOLDER [REPEATS=5]\n");
     return 2;
   }
   try {
-    const int repeats = argc > 3 ? std::max(1, std::atoi(argv[3])) : 3;
+    const int repeats = argc > 3 ? std::max(1, std::atoi(argv[3])) : 5;
     const CompletionModels models = CompletionModels::load(argv[2]);
     std::vector<Row> rows;
     for (const BenchTooth& tooth : load_validation_teeth(argv[1]))
       rows.push_back(complete_often(tooth, models, repeats));
     print_quality(rows);
     print_deviation(rows);
-    print_seconds(rows, repeats);
+    const std::string best = fmt::format(", best of {}", repeats);
+    print_seconds("Seconds by stage" + best, rows, &CompletionRecord::stages);
+    print_seconds("Seconds of the steps of joining" + best, rows, &CompletionRecord::joining_steps);
+    print_sums(rows);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 1;

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# SPDX-FileCopyrightText: Rhizodont contributors
+# SPDX-License-Identifier: GPL-3.0-or-later
+
+# Measures everything that the geometry promises and prints one Markdown page: machine, versions, commands, tables.
+# usage: bench.sh [DATA=../shared/data] > docs/benchmarks.md
+# Needs a built program with its benchmarks, python3-open3d for the comparison, a machine that does nothing else, and
+# about 20 minutes.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+data=${1:-../shared/data}
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+
+version() { dpkg-query -W -f='${Version}' "$1" 2> /dev/null || echo "not installed"; }
+
+# run TITLE COMMAND...: the command as one types it, then what it prints
+run() {
+  printf '\n## %s\n\n' "$1"
+  shift
+  printf '`%s`\n\n' "$*"
+  "$@"
+}
+
+cat << END
+<!--
+SPDX-FileCopyrightText: Rhizodont contributors
+SPDX-License-Identifier: GPL-3.0-or-later
+-->
+# Measured
+
+Written by \`scripts/bench.sh\`; the paper's figures stand beside ours where it has them.
+
+| What | Which |
+|---|---|
+| Processor | $(lscpu | sed -n 's/^Model name: *//p'), $(nproc) cores |
+| Memory | $(free -g | awk '/^Mem/ {print $2}') GB |
+| System | $(. /etc/os-release && echo "$PRETTY_NAME"), $(c++ --version | head -1), $(grep -m1 '^CMAKE_CXX_FLAGS_RELEASE' build/CMakeCache.txt | cut -d= -f2) |
+| Libraries | CGAL $(version libcgal-dev), Eigen $(version libeigen3-dev), oneTBB $(version libtbb-dev), libtorch $(version libtorch-dev), OpenBLAS $(version libopenblas0-openmp), Open3D $(version python3-open3d) |
+| State | $(git rev-parse --short HEAD)$(git diff --quiet HEAD -- src include apps models bench || echo " with changes"), $(date -u +%F) |
+| Load before | $(cut -d' ' -f1-3 /proc/loadavg) |
+END
+
+run "Crown: every real crown" scripts/real_crowns.sh "$data" "$scratch/real"
+run "Crown and triangles of the validation teeth, beside tables 3 and 5 of the paper; time by stage" \
+  build/bench/fusion/bench_fusion "$data" models
+run "Triangles of iterative Poisson, beside table 5" build/bench/poisson/bench_poisson "$data" ipsr
+run "Guiding surface, beside table 1" build/bench/poisson/bench_poisson "$data" distance
+run "Indicator function beside Open3D and CGAL" build/bench/poisson/bench_poisson "$data" peers
+run "Indicator function: growth" build/bench/poisson/bench_poisson "$data" growth
+run "GradNormal: angles and growth" build/bench/isosurface/bench_isosurface "$data"
+run "Restricted Voronoi diagram; crown triangles given by the dual" build/bench/voronoi/bench_voronoi "$data"
+run "Whole tooth: growth with the crown and with 1/e^2, peak memory" build/bench/pipeline/bench_pipeline
