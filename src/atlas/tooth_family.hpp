@@ -108,7 +108,10 @@ struct ToothVariation {
   double warp_mm = 0.27;               ///< smooth displacement of the surface of a tooth 8 mm wide, waves of 7 to 20 mm
   double root_thickness = 0.09;        ///< the root's cross-section along x and y each, relative
   double taper = 0.15;                 ///< change of the cross-section from neck to apex, relative
-  double lean_degrees = 3;             ///< angle between the root's line and the crown's axis, along x and y each
+  double lean_degrees = 4.5;           ///< angle between the root's line and the crown's axis, along x and y each
+  /// Share of the lean of the template's own root that its type has on average, 0..1. One tooth cannot tell what is its
+  /// own and what its type's: templates of neighbouring types lean by 1 to 16 degrees, in either direction.
+  double template_lean = 0.4;
   double distal_bend_mm = 0.9;         ///< sideways shift of the apex towards distal and buccal, millimetres
   double dilaceration_share = 0.05;    ///< share of teeth with a sharp turn near the tip, 0..1
   double divergence_mm = 1.0;          ///< shift of each apex of a multi-rooted tooth away from the others, millimetres

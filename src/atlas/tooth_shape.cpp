@@ -167,6 +167,7 @@ ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean,
   fit_root_length(shape.height, source.root_length, length);
   shape.root_section = {random.normal(1.0, variation.root_thickness), random.normal(1.0, variation.root_thickness)};
   draw_bends(shape, type, length, variation, random);
+  shape.lean -= (1 - variation.template_lean) * centre.cwiseProduct(shape.scale.head<2>());
   return shape;
 }
 
