@@ -7,7 +7,7 @@
 # usage: hostile_crowns.sh [SEEDS=8] [VERTICES="800 4000"] [OUT=results/hostile] [options for complete, e.g. --repair]
 # Needs the program and write_hostile_crown built (scripts/test.sh). Ends with 1 if any command ends otherwise than with
 # 0, 3 or 4, takes longer than LIMIT (seconds, default 120), says no reason, leaves a file behind, or if `check` does not
-# hold on a result. BUILD names the build folder, JOBS how many crowns are completed at a time.
+# hold on a result. FIRST is the first seed (0), BUILD names the build folder, JOBS how many crowns are completed at a time.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 seeds=${1:-8}
@@ -17,6 +17,7 @@ shift $(($# < 3 ? $# : 3))
 export extra="$*" out
 export program=${BUILD:-build}/apps/rhizodont/rhizodont
 export writer=${BUILD:-build}/tests/common/write_hostile_crown
+FIRST=${FIRST:-0}
 export LIMIT=${LIMIT:-120} OMP_NUM_THREADS=1
 mkdir -p "$out"
 
@@ -56,7 +57,7 @@ export -f one_crown
 
 "$writer" | while read -r kind; do
   for vertices in $sizes; do
-    for ((seed = 0; seed < seeds; ++seed)); do echo "$kind|$seed|$vertices"; done
+    for ((seed = FIRST; seed < FIRST + seeds; ++seed)); do echo "$kind|$seed|$vertices"; done
   done
 done | tr '\n' '\0' | xargs -0 -P "${JOBS:-2}" -I{} bash -c 'one_crown "{}"' | sort -t'|' -k1,1 -k3,3n -k2,2n > "$out/outcomes.txt"
 

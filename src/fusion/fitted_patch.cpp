@@ -150,16 +150,14 @@ int FittedPatch::split(int h) {
   return m;
 }
 
-bool FittedPatch::can_collapse(int h, double& smallest) const {
+bool FittedPatch::can_collapse(int h) const {
   const int u = mesh_.from(h), v = mesh_.to(h);
   if (is_frozen(u) || is_frozen(v) || !mesh_.can_collapse(h)) return false;
   bool good = true;
-  smallest = 4;
   mesh_.around(u, [&](int k) {
     const int w = mesh_.to(k), x = mesh_.apex(k);
     if (w == v || x == v) return;
     good = good && faces_outward(point(v), point(w), point(x), w);
-    smallest = std::min(smallest, smallest_angle(point(v), point(w), point(x)));
   });
   return good;
 }

@@ -49,8 +49,8 @@ class FittedPatch {
   void flip(int h) { mesh_.flip(h); }
   bool can_split(int h) const;
   int split(int h);
-  /// Also that no triangle turns over; `smallest` is then the smallest angle that would come about.
-  bool can_collapse(int h, double& smallest) const;
+  /// Also that no triangle turns over.
+  bool can_collapse(int h) const;
   void collapse(int h) { mesh_.collapse(h); }
 
   /// The tooth with these triangles in the place of its new ones.

@@ -16,6 +16,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
+#include <numbers>
 #include <utility>
 
 namespace rhizodont {
@@ -52,8 +54,12 @@ struct Ground {
         border(find_crown_border(crown)),
         distances(crown_distances(surface, crown, border)),
         walk(surface),
-        lengths(crown, border, mean_edge_length(surface), options.edge_growth, options.edge_shrinkage),
+        lengths(edge_lengths(options.edge_growth, options)),
         gap(border_gap(crown, border, walk)) {}
+
+  EdgeLengths edge_lengths(double growth, const FuseOptions& options) const {
+    return {crown, border, mean_edge_length(surface), growth, options.edge_shrinkage};
+  }
 };
 
 /// Positions of the vertices of new triangles that cut others.
@@ -161,14 +167,22 @@ void attempt(const Ground& ground, const FuseOptions& options, const SeparationO
         fmt::format("The seam between crown and root was smoothed to {:.0f} % only.", 100 * fused.transition.applied));
 }
 
-}  // namespace
+/// The smallest angle of new triangles relative to what is wanted there: 1 or more if it is reached everywhere.
+double least_angle_share(const RestoredTooth& tooth, const TransitionOptions& wanted) {
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t t = static_cast<std::size_t>(tooth.crown_triangles); t < tooth.mesh.triangles.size(); ++t) {
+    const Triangle& tri = tooth.mesh.triangles[t];
+    const bool at_border = std::any_of(tri.begin(), tri.end(), [&](int v) { return v < tooth.crown_vertices; });
+    const auto angles = triangle_angles(tooth.mesh, t);
+    const double smallest = *std::min_element(angles.begin(), angles.end()) * 180 / std::numbers::pi;
+    least = std::min(least, smallest / (at_border ? wanted.border_angle : wanted.inner_angle));
+  }
+  return least;
+}
 
-FusedTooth fuse_crown_and_root(const TriangleMesh& crown, const TriangleMesh& guiding_surface,
-                               const Eigen::Vector3d& growth_axis, const FuseOptions& options) {
+/// Starts the root farther from the border until it can be joined.
+FusedTooth fuse_on(const Ground& ground, const FuseOptions& options) {
   FusedTooth fused;
-  Stopwatch watch;
-  const Ground ground(crown, guiding_surface, growth_axis, options);
-  watch.add_to(fused.seconds.separation);
   fused.sharpest_notch = ground.border.sharpest_notch;
   SeparationOptions separation = options.separation;
   std::vector<std::string> failures;
@@ -184,6 +198,44 @@ FusedTooth fuse_crown_and_root(const TriangleMesh& crown, const TriangleMesh& gu
     }
     separation.clearance = 1.6 * separation.clearance + 0.15;
   }
+}
+
+void add_seconds(const FuseSeconds& more, FuseSeconds& sum) {
+  sum.separation += more.separation;
+  sum.sites += more.sites;
+  sum.joining += more.joining;
+  sum.restoring += more.restoring;
+  sum.remeshing += more.remeshing;
+  sum.transition += more.transition;
+}
+
+}  // namespace
+
+FusedTooth fuse_crown_and_root(const TriangleMesh& crown, const TriangleMesh& guiding_surface,
+                               const Eigen::Vector3d& growth_axis, const FuseOptions& options) {
+  FuseSeconds seconds;
+  Stopwatch watch;
+  Ground ground(crown, guiding_surface, growth_axis, options);
+  watch.add_to(seconds.separation);
+  FusedTooth best = fuse_on(ground, options);
+  double share = least_angle_share(best.tooth, options.transition);
+  add_seconds(best.seconds, seconds);
+  for (const double growth : options.other_growths) {
+    if (share >= 1) break;
+    ground.lengths = ground.edge_lengths(growth, options);
+    try {
+      FusedTooth other = fuse_on(ground, options);
+      add_seconds(other.seconds, seconds);
+      const double others = least_angle_share(other.tooth, options.transition);
+      if (others <= share) continue;
+      share = others;
+      best = std::move(other);
+    } catch (const NoResultError&) {
+      // There is a tooth already; this was to make it better.
+    }
+  }
+  best.seconds = seconds;
+  return best;
 }
 
 }  // namespace rhizodont

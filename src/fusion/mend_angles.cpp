@@ -17,20 +17,20 @@ constexpr double worthwhile = 1e-3;  // radians by which an operation has to imp
 
 class Mender {
  public:
-  explicit Mender(FittedPatch& patch) : patch_(patch) {}
+  Mender(FittedPatch& patch, double crown_weight) : patch_(patch), crown_weight_(crown_weight) {}
 
   /// Works on the triangles with an angle below the bound, worst first; returns the number of operations.
   int round(double bound) {
     std::vector<std::pair<double, int>> bad;
     for (int h = 0; h < mesh().half_edges(); h += 3) {
       if (!mesh().is_alive(h)) continue;
-      const double angle = patch_.smallest_angle_at(h);
+      const double angle = angle_at(h);
       if (angle < bound) bad.emplace_back(angle, h);
     }
     std::sort(bad.begin(), bad.end());
     int done = 0;
     for (const auto& [angle, h] : bad)
-      if (mesh().is_alive(h) && patch_.smallest_angle_at(h) < bound && improve(h)) ++done;
+      if (mesh().is_alive(h) && angle_at(h) < bound && improve(h)) ++done;
     return done;
   }
 
@@ -41,9 +41,22 @@ class Mender {
     return improve_by_flip(h) || improve_by_collapse(h) || improve_by_moves(h) || improve_by_split(h);
   }
 
+  double weight(int a, int b, int c) const {
+    return mesh().is_fixed(a) || mesh().is_fixed(b) || mesh().is_fixed(c) ? crown_weight_ : 1;
+  }
+
+  /// Weighted smallest angle of a triangle of these vertices, with the first of them at p.
+  double angle_of(int a, const Point& p, int b, int c) const {
+    return weight(a, b, c) * smallest_angle(p, patch_.point(b), patch_.point(c));
+  }
+
+  double angle_of(int a, int b, int c) const { return angle_of(a, patch_.point(a), b, c); }
+
+  double angle_at(int h) const { return angle_of(mesh().from(h), mesh().to(h), mesh().apex(h)); }
+
   double smallest_around(int v) const {
-    double smallest = 4;
-    mesh().around(v, [&](int h) { smallest = std::min(smallest, patch_.smallest_angle_at(h)); });
+    double smallest = 4 * crown_weight_;
+    mesh().around(v, [&](int h) { smallest = std::min(smallest, angle_at(h)); });
     return smallest;
   }
 
@@ -51,10 +64,8 @@ class Mender {
   double flip_gain(int h) const {
     if (!patch_.can_flip(h)) return -1;
     const int g = mesh().opposite(h);
-    const Point &a = patch_.point(mesh().from(h)), &b = patch_.point(mesh().to(h));
-    const Point &c = patch_.point(mesh().apex(h)), &d = patch_.point(mesh().apex(g));
-    const double before = std::min(smallest_angle(a, b, c), smallest_angle(b, a, d));
-    return std::min(smallest_angle(d, c, a), smallest_angle(c, d, b)) - before;
+    const int a = mesh().from(h), b = mesh().to(h), c = mesh().apex(h), d = mesh().apex(g);
+    return std::min(angle_of(d, c, a), angle_of(c, d, b)) - std::min(angle_of(a, b, c), angle_of(b, a, d));
   }
 
   bool improve_by_flip(int h) {
@@ -75,15 +86,24 @@ class Mender {
     double best_gain = worthwhile;
     for (const int k : {h, PatchMesh::next(h), PatchMesh::previous(h)})
       for (const int way : {k, mesh().opposite(k)}) {
-        double after = 0;
-        if (way < 0 || patch_.relative_length(way) > 1 || !patch_.can_collapse(way, after)) continue;
-        const double gain = after - smallest_around(mesh().from(way));
+        if (way < 0 || patch_.relative_length(way) > 1 || !patch_.can_collapse(way)) continue;
+        const double gain = smallest_after_collapse(way) - smallest_around(mesh().from(way));
         if (gain <= best_gain) continue;
         best = way;
         best_gain = gain;
       }
     if (best >= 0) patch_.collapse(best);
     return best >= 0;
+  }
+
+  double smallest_after_collapse(int h) const {
+    const int v = mesh().to(h);
+    double smallest = 4 * crown_weight_;
+    mesh().around(mesh().from(h), [&](int k) {
+      const int b = mesh().to(k), c = mesh().apex(k);
+      if (b != v && c != v) smallest = std::min(smallest, angle_of(v, b, c));
+    });
+    return smallest;
   }
 
   /// Moves a free corner of the triangle to the best of a few places about it.
@@ -111,11 +131,9 @@ class Mender {
         const double length = along.norm();
         if (!(length > 0)) continue;
         const SurfacePlace place = patch_.fit(v, here + sign * std::min(step / length, 0.5) * along);
-        double smallest = 4;
-        mesh().around(v, [&](int k) {
-          smallest =
-              std::min(smallest, smallest_angle(place.point, patch_.point(mesh().to(k)), patch_.point(mesh().apex(k))));
-        });
+        double smallest = 4 * crown_weight_;
+        mesh().around(
+            v, [&](int k) { smallest = std::min(smallest, angle_of(v, place.point, mesh().to(k), mesh().apex(k))); });
         if (smallest <= best_angle || !patch_.can_move(v, place)) continue;
         best_angle = smallest;
         best = place;
@@ -141,23 +159,26 @@ class Mender {
     if (!(mesh().is_fixed(a) && mesh().is_fixed(b))) {
       const int g = mesh().opposite(longest);
       const Point middle = 0.5 * (patch_.point(a) + patch_.point(b));
-      double after = 4;
+      double after = 4 * crown_weight_;
       for (const int apex : {mesh().apex(longest), mesh().apex(g)})
-        for (const int end : {a, b})
-          after = std::min(after, smallest_angle(middle, patch_.point(end), patch_.point(apex)));
-      if (after < std::min(patch_.smallest_angle_at(longest), patch_.smallest_angle_at(g)) + worthwhile) return false;
+        for (const int end : {a, b}) {
+          const double touching = mesh().is_fixed(apex) || mesh().is_fixed(end) ? crown_weight_ : 1;
+          after = std::min(after, touching * smallest_angle(middle, patch_.point(end), patch_.point(apex)));
+        }
+      if (after < std::min(angle_at(longest), angle_at(g)) + worthwhile) return false;
     }
     patch_.split(longest);
     return true;
   }
 
   FittedPatch& patch_;
+  double crown_weight_;
 };
 
 }  // namespace
 
-int mend_angles(FittedPatch& patch, double least_angle, int rounds) {
-  Mender mender(patch);
+int mend_angles(FittedPatch& patch, double least_angle, int rounds, double crown_weight) {
+  Mender mender(patch, crown_weight);
   int done = 0;
   for (int round = 0; round < rounds; ++round) {
     const int now = mender.round(least_angle);

@@ -8,7 +8,8 @@ namespace rhizodont {
 
 /// Takes away small angles by local operations: an edge is turned, collapsed or split, or a vertex moved, wherever that
 /// makes the smallest angle of the triangles concerned larger. `least_angle` in radians: triangles that have a smaller
-/// one are worked on. Returns the number of operations.
-int mend_angles(FittedPatch& patch, double least_angle, int rounds);
+/// one are worked on. Angles of triangles that touch the crown count `crown_weight` times: with more than 1 they may be
+/// made worse for the sake of others. Returns the number of operations.
+int mend_angles(FittedPatch& patch, double least_angle, int rounds, double crown_weight = 1);
 
 }  // namespace rhizodont

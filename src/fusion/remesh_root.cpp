@@ -75,10 +75,9 @@ int split_long_edges(FittedPatch& patch, double longest) {
 
 int collapse_short_edges(FittedPatch& patch, double shortest) {
   int collapses = 0;
-  double smallest = 0;
   for (int h = 0; h < patch.mesh().half_edges(); ++h) {
     if (!patch.mesh().is_alive(h) || patch.mesh().opposite(h) < 0) continue;
-    if (patch.relative_length(h) >= shortest || !patch.can_collapse(h, smallest)) continue;
+    if (patch.relative_length(h) >= shortest || !patch.can_collapse(h)) continue;
     patch.collapse(h);
     ++collapses;
   }
@@ -152,6 +151,10 @@ RootRemeshing remesh_root(RestoredTooth& tooth, const SurfaceWalk& guiding_surfa
   constexpr double radians = std::numbers::pi / 180;
   for (int i = 0; i < options.mending_passes; ++i) {
     done.mended += mend_angles(patch, options.least_angle * radians, options.mending_rounds);
+    if (smallest_angles_suffice(patch, options)) break;
+    // Triangles that touch the crown have less to promise: what they can spare is given to those beside them.
+    done.mended += mend_angles(patch, 1.1 * options.inner_angle * radians, options.mending_rounds,
+                               options.inner_angle / options.border_angle);
     if (smallest_angles_suffice(patch, options)) break;
     // What no single operation mends may be mended from a slightly different start.
     if (i + 1 < options.mending_passes) {

@@ -8,6 +8,7 @@
 #include <nanoflann.hpp>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 namespace rhizodont {
@@ -86,6 +87,23 @@ struct NearestVertexIndex::Tree {
     return found;
   }
 
+  /// The nearest from balls that grow until one holds enough; `found` is much shorter than the list of all points.
+  std::size_t nearest_of_balls(const Point& query, std::span<NearVertex> found) const {
+    std::array<NearVertex, 32> first;
+    NearestSet set(first);
+    index->findNeighbors(set, query.data(), nanoflann::SearchParams(0, 0.0F, false));
+    // On a surface the number of points grows with the squared radius.
+    double squared_radius =
+        first.back().squared_distance * static_cast<double>(found.size()) / static_cast<double>(first.size());
+    if (!(squared_radius > 0)) return nearest_of_all(query, found);
+    for (;; squared_radius *= 2) {
+      const std::vector<NearVertex> near = ball(query, squared_radius);
+      if (near.size() < found.size()) continue;
+      std::copy_n(near.begin(), found.size(), found.begin());
+      return found.size();
+    }
+  }
+
   std::size_t nearest_of_all(const Point& query, std::span<NearVertex> found) const {
     std::vector<NearVertex> all(points.size());
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -126,9 +144,10 @@ std::vector<NearVertex> NearestVertexIndex::nearest(const Point& query, std::siz
 
 std::size_t NearestVertexIndex::nearest(const Point& query, std::span<NearVertex> found) const {
   if (found.empty()) return 0;
-  // Insertion into a long list costs more than looking at every vertex.
+  // Insertion into a long list costs more than sorting what is near, or all.
   constexpr std::size_t long_list = 256;
-  if (found.size() > long_list) return tree_->nearest_of_all(query, found);
+  if (found.size() > long_list)
+    return found.size() < size() / 8 ? tree_->nearest_of_balls(query, found) : tree_->nearest_of_all(query, found);
   NearestSet set(found);
   tree_->index->findNeighbors(set, query.data(), nanoflann::SearchParams(0, 0.0F, false));
   return set.size();

@@ -61,16 +61,38 @@ void sort_by_badness(std::vector<Candidate>& candidates) {
                    [](const Candidate& x, const Candidate& y) { return x.badness < y.badness; });
 }
 
+struct FittedAxis {
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  double residual_mm = 0;
+};
+
+/// Of axes that are next to the same the one that fits best: many fits end in one place.
+std::vector<FittedAxis> distinct(std::vector<FittedAxis> axes) {
+  constexpr double same = 0.9994;  // cosine of 2 degrees: a cap is found from axes known to 20
+  std::stable_sort(axes.begin(), axes.end(),
+                   [](const FittedAxis& x, const FittedAxis& y) { return x.residual_mm < y.residual_mm; });
+  std::vector<FittedAxis> kept;
+  for (const FittedAxis& a : axes)
+    if (std::none_of(kept.begin(), kept.end(), [&](const FittedAxis& k) { return k.axis.dot(a.axis) > same; }))
+      kept.push_back(a);
+  return kept;
+}
+
 std::vector<Candidate> for_known_type(const TriangleMesh& crown, const Atlas& atlas, int fdi) {
   const SurfaceSamples samples = sample_surface(crown, 1500, 1);
   const OrientedPoints points{samples.points, samples.normals};
   const MeanCrown& mean = atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))];
   const auto directions = starting_directions();
-  std::vector<Candidate> candidates(directions.size());
+  std::vector<FittedAxis> axes(directions.size());
   tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t i) {
     const RigidFit fit = fit_mean_crown(points, mean, is_right_side(fdi), false, directions[i]);
-    candidates[i] = along_axis(crown, fit.frame.direction_to_world(Eigen::Vector3d::UnitZ()));
-    candidates[i].badness *= misfit(fit.residual_mm);
+    axes[i] = {fit.frame.direction_to_world(Eigen::Vector3d::UnitZ()), fit.residual_mm};
+  });
+  axes = distinct(std::move(axes));
+  std::vector<Candidate> candidates(axes.size());
+  tbb::parallel_for(std::size_t{0}, axes.size(), [&](std::size_t i) {
+    candidates[i] = along_axis(crown, axes[i].axis);
+    candidates[i].badness *= misfit(axes[i].residual_mm);
   });
   return candidates;
 }

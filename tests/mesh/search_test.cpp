@@ -94,6 +94,25 @@ TEST(NearestVertexIndexTest, AgreesWithExhaustiveSearch) {
   }
 }
 
+TEST(NearestVertexIndexTest, LongListsAgreeWithExhaustiveSearch) {
+  // points on a sphere, half of them on a small part of it, and a few far away
+  std::mt19937 engine(3);
+  std::vector<Point> points;
+  for (int k = 0; k < 6000; ++k)
+    points.push_back((random_point(engine, 1) + Point(k % 2 == 0 ? 0 : 30, 0, 0)).normalized());
+  for (int k = 0; k < 5; ++k) points.push_back(random_point(engine, 100));
+  const NearestVertexIndex index(points);
+  for (int k = 0; k < 20; ++k) {
+    const Point q = k % 2 == 0 ? points[static_cast<std::size_t>(k)] : random_point(engine, 3);
+    const auto expected = by_hand(points, q);
+    for (const std::size_t count : {256U, 257U, 700U, 3500U}) {
+      const auto found = index.nearest(q, count);
+      ASSERT_EQ(found.size(), count);
+      for (std::size_t i = 0; i < count; ++i) ASSERT_EQ(found[i].index, expected[i].index);
+    }
+  }
+}
+
 TEST(NearestVertexIndexTest, TiesGoToTheLowerIndex) {
   // a grid point repeated many times, and the eight corners of a cube about the query
   std::vector<Point> points(40, Point(1, 1, 1));

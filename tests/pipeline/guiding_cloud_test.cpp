@@ -24,8 +24,8 @@ OrientedPoints prediction(const Eigen::Vector3d& shift, double noise) {
   const SurfaceSamples samples = sample_surface(test::sphere(5, radius), 3000, 3);
   OrientedPoints points{samples.points, samples.normals};
   std::mt19937 random(5);
-  std::normal_distribution<double> normal(0, noise);
-  for (Point& p : points.points) p += shift + Eigen::Vector3d(normal(random), normal(random), normal(random));
+  std::normal_distribution<double> normal;
+  for (Point& p : points.points) p += shift + noise * Eigen::Vector3d(normal(random), normal(random), normal(random));
   return points;
 }
 
