@@ -112,19 +112,19 @@ struct ToothVariation {
   /// Share of the lean of the template's own root that its type has on average, 0..1. One tooth cannot tell what is its
   /// own and what its type's: templates of neighbouring types lean by 1 to 16 degrees, in either direction.
   double template_lean = 0.4;
-  double distal_bend_mm = 0.9;         ///< sideways shift of the apex towards distal and buccal, millimetres
-  double dilaceration_share = 0.05;    ///< share of teeth with a sharp turn near the tip, 0..1
-  double divergence_mm = 1.0;          ///< shift of each apex of a multi-rooted tooth away from the others, millimetres
-  double fusion = 1;                   ///< factor on the share of teeth whose roots part late, 0..2
-  double junction_curve = 0.2;         ///< depth of the curves of the cemento-enamel junction, relative
-  double blunt_share = 0.4;            ///< share of root tips that are rounded off, by up to 0.7 mm, 0..1
-  double open_apex_share = 0.03;       ///< share of immature teeth: short and wide open at the tip, 0..1
-  double resorption_share = 0.04;      ///< share of teeth with shortened, blunt roots, 0..1
-  double deciduous_share = 0.02;       ///< share of small squat crowns on slender, flaring roots, 0..1
-  double wear_mm = 3.0;                ///< largest loss of cusp height in a worn tooth; most lose little, millimetres
-  double wear_share = 0.5;             ///< share of worn teeth, 0..1
-  double decay_share = 0.05;           ///< share of crowns with a cavity or chip, 0..1
-  double bracket_share = 0.05;         ///< share of crowns with a bracket or attachment, 0..1
+  double distal_bend_mm = 0.9;       ///< sideways shift of the apex towards distal and buccal, millimetres
+  double dilaceration_share = 0.05;  ///< share of teeth with a sharp turn near the tip, 0..1
+  double divergence_mm = 1.0;        ///< shift of each apex of a multi-rooted tooth away from the others, millimetres
+  double fusion = 1;                 ///< factor on the share of teeth whose roots part late, 0..2
+  double junction_curve = 0.2;       ///< depth of the curves of the cemento-enamel junction, relative
+  double blunt_share = 0.4;          ///< share of root tips that are rounded off, by up to 0.7 mm, 0..1
+  double open_apex_share = 0.03;     ///< share of immature teeth: short and wide open at the tip, 0..1
+  double resorption_share = 0.04;    ///< share of teeth with shortened, blunt roots, 0..1
+  double deciduous_share = 0.02;     ///< share of small squat crowns on slender, flaring roots, 0..1
+  double wear_mm = 3.0;              ///< largest loss of cusp height in a worn tooth; most lose little, millimetres
+  double wear_share = 0.5;           ///< share of worn teeth, 0..1
+  double decay_share = 0.05;         ///< share of crowns with a cavity or chip, 0..1
+  double bracket_share = 0.05;       ///< share of crowns with a bracket or attachment, 0..1
 };
 
 /// A generated whole tooth, millimetres, in the frame of FamilyTemplate, and what is known about it.
