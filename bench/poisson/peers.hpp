@@ -13,9 +13,9 @@ struct PeerResult {
   double seconds = 0;
 };
 
-/// Open3D's Poisson reconstruction by bench/poisson/open3d_poisson.py, two threads, the fastest of some runs.
+/// Open3D's Poisson reconstruction by bench/poisson/open3d_poisson.py, two threads, the fastest of `runs`.
 /// Throws NoResultError if the script fails. Files go to `scratch`.
-PeerResult open3d_poisson(const OrientedPoints& samples, int depth, const std::filesystem::path& scratch);
+PeerResult open3d_poisson(const OrientedPoints& samples, int depth, int runs, const std::filesystem::path& scratch);
 
 /// CGAL's Poisson reconstruction on a Delaunay mesh with its own defaults; `spacing`: mean distance of samples (mm).
 PeerResult cgal_poisson(const OrientedPoints& samples, double spacing);

@@ -130,7 +130,9 @@ void Flood::flood(const Cell& start) {
 /// The component that cuts a cell around the vertex, found now if it is a new one; -1 if there is none.
 std::int32_t Flood::component_near(const LatticeVertex& vertex) {
   const auto v = static_cast<std::size_t>(vertex_index(vertex));
-  if (searched_[v]) return component_of_[v];
+  // A surface is known here. Another one that cuts cells of this very vertex matters only if all are kept.
+  const bool known = component_of_[v] >= 0 && !options_.every_component;
+  if (searched_[v] || known) return component_of_[v];
   searched_[v] = 1;
   const auto around = GoldbergTiling::around(vertex);
   std::array<Cell, 24> cells;

@@ -118,8 +118,8 @@ TriangleMesh marching_tetrahedra(const ScalarField& field, double iso, std::span
     const auto& [in, out] = edge_mesh.edges[v];
     const Point inside = tiling.position(cells.vertices[static_cast<std::size_t>(in)]);
     const Point outside = tiling.position(cells.vertices[static_cast<std::size_t>(out)]);
-    const double above = field(inside).value - iso, below = iso - field(outside).value;
-    mesh.vertices[v] = inside + above / (above + below) * (outside - inside);
+    // The field is a smeared step, far from linear over an edge: interpolation would be off by more than the field is.
+    mesh.vertices[v] = crossing_of_edge(field, iso, inside, outside, options.tolerance).value_or(outside);
   });
   return mesh;
 }

@@ -61,9 +61,9 @@ Isosurface mid_normal(const ScalarField& field, double iso, std::span<const Poin
 Isosurface grad_normal(const ScalarField& field, double iso, std::span<const Point> seeds,
                        const IsosurfaceOptions& options = {});
 
-/// The plain isosurface: a vertex on each cut edge of the tiling, where the field would pass the value if it were
-/// linear along the edge, and the triangles between them as they come. With `every_component` all parts that the seeds
-/// touch. Triangles may be needles. Parameters and errors as for `mid_normal`; `as_ball` is not looked at.
+/// The plain isosurface: a vertex on each cut edge of the tiling, where the field passes the value to the tolerance,
+/// and the triangles between them as they come. With `every_component` all parts that the seeds touch. Triangles may be
+/// needles. Parameters and errors as for `mid_normal`; `as_ball` is not looked at.
 TriangleMesh marching_tetrahedra(const ScalarField& field, double iso, std::span<const Point> seeds,
                                  const IsosurfaceOptions& options = {});
 

@@ -15,36 +15,6 @@
 namespace rhizodont {
 namespace {
 
-/// Where the field takes the value between the ends, by regula falsi with the Illinois rule and bisection as its
-/// safeguard. Nothing if the ends are not on their sides, because one was put on the other to cut a bridge or to fill a
-/// tunnel.
-std::optional<Point> crossing_of_edge(const ScalarField& field, double iso, const Point& inside, const Point& outside,
-                                      double tolerance) {
-  const double length = (outside - inside).norm();
-  double low = 0.0, high = 1.0;
-  double at_low = field(inside).value - iso, at_high = field(outside).value - iso;
-  if (at_low > 0.0 && at_high == 0.0) return outside;
-  if (!(at_low > 0.0) || !(at_high < 0.0)) return std::nullopt;
-  double t = 0.5;
-  for (int step = 0; step < 100 && (high - low) * length > tolerance; ++step) {
-    t = step % 4 == 3 ? 0.5 * (low + high) : low + (high - low) * at_low / (at_low - at_high);
-    if (!(t > low && t < high)) t = 0.5 * (low + high);
-    if (!(t > low && t < high)) break;
-    const double value = field(inside + t * (outside - inside)).value - iso;
-    if (std::abs(value) < 1e-15) break;
-    if (value > 0.0) {
-      low = t;
-      at_low = value;
-      at_high *= 0.5;
-    } else {
-      high = t;
-      at_high = value;
-      at_low *= 0.5;
-    }
-  }
-  return inside + t * (outside - inside);
-}
-
 /// The point of the surface nearest to `target`, by sliding along tangent planes from a point on the surface.
 std::optional<Point> nearest_on_surface(const ScalarField& field, double iso, const Point& target, const Point& start,
                                         const IsosurfaceOptions& options) {
@@ -68,6 +38,28 @@ std::optional<Point> nearest_on_surface(const ScalarField& field, double iso, co
 }
 
 }  // namespace
+
+std::optional<Point> crossing_of_edge(const ScalarField& field, double iso, const Point& inside, const Point& outside,
+                                      double tolerance) {
+  const Eigen::Vector3d edge = outside - inside;
+  const double length = edge.norm(), at_inside = field(inside).value - iso, at_outside = field(outside).value - iso;
+  if (at_inside > 0.0 && at_outside == 0.0) return outside;
+  if (!(at_inside > 0.0) || !(at_outside < 0.0)) return std::nullopt;
+  double low = 0.0, high = 1.0, t = at_inside / (at_inside - at_outside);
+  for (int step = 0; step < 100; ++step) {
+    const FieldSample sample = field(inside + t * edge);
+    const double value = sample.value - iso, slope = sample.gradient.dot(edge);
+    if (value == 0.0) break;
+    (value > 0.0 ? low : high) = t;
+    double next = t - value / slope;
+    // Every fourth step halves the bracket, so that the search ends whatever the field.
+    if (step % 4 == 3 || !(next > low && next < high)) next = 0.5 * (low + high);
+    const double moved = std::abs(next - t) * length;
+    t = next;
+    if (moved < tolerance || !(t > low && t < high)) break;
+  }
+  return inside + t * edge;
+}
 
 std::optional<Point> settle(const ScalarField& field, double iso, Point p, double largest_step, double tolerance) {
   for (int step = 0; step < 12; ++step) {

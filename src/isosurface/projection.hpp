@@ -21,6 +21,12 @@ struct EdgeVertex {
   bool on_surface = false;      ///< whether `position` is; not so where a bridge was cut or a tunnel filled
 };
 
+/// Where the field takes the value between the ends, by Newton steps within a bracket that bisection narrows. Nothing
+/// if the ends are not on their sides, because one was put on the other to cut a bridge or to fill a tunnel.
+/// `tolerance` in mm.
+std::optional<Point> crossing_of_edge(const ScalarField& field, double iso, const Point& inside, const Point& outside,
+                                      double tolerance);
+
 /// Newton steps along the gradient to the surface; nothing if they leave it or the field is flat. `tolerance` in mm.
 std::optional<Point> settle(const ScalarField& field, double iso, Point p, double largest_step, double tolerance);
 

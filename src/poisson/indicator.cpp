@@ -7,9 +7,11 @@
 
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 #include "poisson/bspline.hpp"
@@ -248,9 +250,16 @@ IndicatorFunction solve_indicator(const OrientedPoints& samples, std::span<const
 
   const Depths depths = depths_of(unit.points, shares, layout, options.samples_per_cell);
   const std::vector<SplineLevel> levels = build_levels(layout, depths.reach, level_options);
-  const auto screening = screening_samples(levels, unit.points, shares, depths.width, weights, options.screening);
-  LevelField load = normal_load(levels, unit, shares, depths.depth);
-  add_screening_load(levels, screening, 0.5, load);
+  // Both go through the samples in order, so each has a thread of its own.
+  std::vector<std::vector<ScreeningSample>> screening;
+  LevelField load, pull(field_size(levels), 0.0);
+  tbb::parallel_invoke([&] { load = normal_load(levels, unit, shares, depths.depth); },
+                       [&] {
+                         screening =
+                             screening_samples(levels, unit.points, shares, depths.width, weights, options.screening);
+                         add_screening_load(levels, screening, 0.5, pull);
+                       });
+  std::ranges::transform(load, pull, load.begin(), std::plus{});
   const PoissonSolution solution =
       solve_screened_poisson(levels, screening, load, options.tolerance, options.max_cycles);
   if (!(solution.relative_residual <= 1.01 * options.tolerance))

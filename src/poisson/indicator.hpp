@@ -24,7 +24,7 @@ struct IndicatorOptions {
   double margin = 1.0;     ///< mm, > 0: least distance from the samples to the box outside which the function is 0
   double samples_per_cell = 0.5;  ///< > 0: where samples are sparser, splines are wider, to have so many per cell
   int neighbours = 10;            ///< [3, 100]: neighbours from which a sample's share of the surface is estimated
-  double tolerance = 1e-4;        ///< (0, 1): norm of the residual over the norm of the right-hand side
+  double tolerance = 3e-4;        ///< (0, 1): norm of the residual over the norm of the right-hand side
   int max_cycles = 60;            ///< >= 1: multigrid cycles before giving up
 };
 

@@ -7,10 +7,12 @@
 #include "poisson/multigrid.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "poisson/bspline.hpp"
 #include "poisson/level_cycle.hpp"
@@ -124,8 +126,9 @@ PoissonSolution solve_screened_poisson(const std::vector<SplineLevel>& levels,
   const double norm = std::sqrt(dot(load, load));
   if (!(norm > 0.0)) return solution;
 
-  ScreenedLaplacian laplacian(levels, samples);
-  LevelCycle cycle_on_levels(levels, samples);
+  std::optional<ScreenedLaplacian> laplacian;
+  std::optional<LevelCycle> cycle_on_levels;
+  tbb::parallel_invoke([&] { laplacian.emplace(levels, samples); }, [&] { cycle_on_levels.emplace(levels, samples); });
   LevelField r = load, p(load.size(), 0.0), q(load.size(), 0.0), z(load.size(), 0.0);
   std::vector<float> single_r(load.size()), single_z(load.size());
   const auto precondition = [&](double size) {
@@ -133,7 +136,7 @@ PoissonSolution solve_screened_poisson(const std::vector<SplineLevel>& levels,
     for_each_chunk(r.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) single_r[i] = static_cast<float>(r[i] / size);
     });
-    cycle_on_levels.apply(single_r, single_z);
+    cycle_on_levels->apply(single_r, single_z);
     for_each_chunk(r.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) z[i] = size * static_cast<double>(single_z[i]);
     });
@@ -148,7 +151,7 @@ PoissonSolution solve_screened_poisson(const std::vector<SplineLevel>& levels,
     for_each_chunk(p.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) p[i] = z[i] + beta * p[i];
     });
-    laplacian.apply(p, q);
+    laplacian->apply(p, q);
     curvature = dot(p, q);
     if (!(curvature > 0.0)) break;
     const double alpha = dot(p, r) / curvature;
@@ -163,7 +166,7 @@ PoissonSolution solve_screened_poisson(const std::vector<SplineLevel>& levels,
     if (size <= tolerance * norm) break;
   }
   // The recursion's residual drifts from the true one by rounding: report the true one.
-  laplacian.apply(x, q);
+  laplacian->apply(x, q);
   for_each_chunk(r.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) r[i] = load[i] - q[i];
   });

@@ -26,6 +26,43 @@ struct Cloud {
 
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Cloud>, Cloud, 3, std::uint32_t>;
 
+/// Searches in one tree, with the room that they need.
+class Search {
+ public:
+  explicit Search(const Tree& tree) : tree_(tree) {}
+
+  /// The `count` points nearest to point i, itself left out, and their distances.
+  void run(const Point& p, std::size_t i, std::size_t count, int* neighbours, double* distances) {
+    indices_.resize(count + 1);
+    squared_.resize(count + 1);
+    found_.resize(count + 1);
+    tree_.knnSearch(p.data(), count + 1, indices_.data(), squared_.data());
+    for (std::size_t k = 0; k <= count; ++k) found_[k] = {squared_[k], static_cast<int>(indices_[k])};
+    std::ranges::sort(found_);
+    std::size_t kept = 0;
+    for (const auto& [squared_distance, index] : found_) {
+      if (index == static_cast<int>(i) || kept == count) continue;
+      neighbours[kept] = index;
+      distances[kept] = std::sqrt(squared_distance);
+      ++kept;
+    }
+  }
+
+ private:
+  const Tree& tree_;
+  std::vector<std::uint32_t> indices_;
+  std::vector<double> squared_;
+  std::vector<std::pair<double, int>> found_;
+};
+
+template <class Body>
+void for_each_point(std::size_t count, const Tree& tree, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), [&](const auto& range) {
+    Search search(tree);
+    for (std::size_t i = range.begin(); i < range.end(); ++i) body(search, i);
+  });
+}
+
 }  // namespace
 
 Neighbours nearest_neighbours(std::span<const Point> points, std::size_t count) {
@@ -35,24 +72,27 @@ Neighbours nearest_neighbours(std::span<const Point> points, std::size_t count) 
   result.distances.resize(points.size() * result.count);
   const Cloud cloud{points};
   const Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12));
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), 64), [&](const auto& range) {
-    std::vector<std::uint32_t> indices(result.count + 1);
-    std::vector<double> squared(result.count + 1);
-    std::vector<std::pair<double, int>> found(result.count + 1);
-    for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      tree.knnSearch(points[i].data(), result.count + 1, indices.data(), squared.data());
-      for (std::size_t k = 0; k < found.size(); ++k) found[k] = {squared[k], static_cast<int>(indices[k])};
-      std::ranges::sort(found);
-      std::size_t kept = 0;
-      for (const auto& [squared_distance, index] : found) {
-        if (index == static_cast<int>(i) || kept == result.count) continue;
-        result.indices[i * result.count + kept] = index;
-        result.distances[i * result.count + kept] = std::sqrt(squared_distance);
-        ++kept;
-      }
-    }
+  for_each_point(points.size(), tree, [&](Search& search, std::size_t i) {
+    search.run(points[i], i, result.count, result.indices.data() + i * result.count,
+               result.distances.data() + i * result.count);
   });
   return result;
+}
+
+void visit_neighbours(std::span<const Point> points, std::size_t few, std::size_t many,
+                      const std::function<bool(std::size_t, std::span<const int>, std::span<const double>)>& visit) {
+  few = std::min(few, points.size() - 1);
+  many = std::min(many, points.size() - 1);
+  const Cloud cloud{points};
+  const Tree tree(3, cloud, nanoflann::KDTreeSingleIndexAdaptorParams(12));
+  for_each_point(points.size(), tree, [&](Search& search, std::size_t i) {
+    std::vector<int> neighbours(many);
+    std::vector<double> distances(many);
+    for (const std::size_t count : {few, many}) {
+      search.run(points[i], i, count, neighbours.data(), distances.data());
+      if (visit(i, std::span(neighbours).first(count), std::span(distances).first(count))) break;
+    }
+  });
 }
 
 }  // namespace rhizodont

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,5 +22,10 @@ struct Neighbours {
 
 /// `count` neighbours of each point, or all others where there are fewer. Precondition: finite points, at least two.
 Neighbours nearest_neighbours(std::span<const Point> points, std::size_t count);
+
+/// Calls visit(i, neighbours of point i, their distances) for each point, from several threads: first with the `few`
+/// nearest, and again with the `many` nearest if it returned false. Orders and precondition as above.
+void visit_neighbours(std::span<const Point> points, std::size_t few, std::size_t many,
+                      const std::function<bool(std::size_t, std::span<const int>, std::span<const double>)>& visit);
 
 }  // namespace rhizodont

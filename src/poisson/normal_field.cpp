@@ -33,18 +33,30 @@ void splat(const SplineLevel& level, int number, const OrientedPoints& samples, 
   }
 }
 
-/// out[512] = sum over the axes of int dB_i/dx_axis field_axis for the functions of one block.
-void divergence_block(const SplineLevel& level, std::size_t block, const VectorField& field, double* out) {
+/// What the smeared normals give the functions of one block: sum over the axes of int dB_i/dx_axis field_axis.
+struct Divergence {
+  std::array<double, block_size> own{};  // of the level's own field
+  std::array<double, block_size> all{};  // with those of coarser levels
+};
+
+Divergence divergence_of_block(const SplineLevel& level, std::size_t block, const VectorField& own,
+                               const VectorField& sums) {
   const SplineTables tables = spline_tables(level.degree);
-  std::array<double, largest_patch> patch;
-  std::fill_n(out, block_size, 0.0);
+  const std::ptrdiff_t wide = SplineLevel::side + 2 * level.degree, used = wide * wide * wide;
+  std::array<double, largest_patch> own_patch, patch;
+  Divergence result;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     std::array<std::array<double, 5>, 3> taps{tables.mass, tables.mass, tables.mass};
     taps[axis] = tables.derivative;
     for (double& tap : taps[0]) tap *= level.spacing * level.spacing;
-    gather_patch(level, field[axis].data() + level.first, block, patch.data());
-    add_block_product(level.degree, taps, patch.data(), out);
+    gather_patch(level, sums[axis].data() + level.first, block, patch.data());
+    add_block_product(level.degree, taps, patch.data(), result.all.data());
+    // Most blocks of coarser levels have no samples of their own.
+    gather_patch(level, own[axis].data() + level.first, block, own_patch.data());
+    if (std::all_of(own_patch.begin(), own_patch.begin() + used, [](double x) { return x == 0.0; })) continue;
+    add_block_product(level.degree, taps, own_patch.data(), result.own.data());
   }
+  return result;
 }
 
 }  // namespace
@@ -61,15 +73,14 @@ LevelField normal_load(const std::vector<SplineLevel>& levels, const OrientedPoi
   for (std::size_t l = levels.size(); l-- > 0;) {
     const SplineLevel& level = levels[l];
     tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
-      std::array<double, block_size> of_finer{}, of_own, of_all;
+      std::array<double, block_size> of_finer{};
       const std::size_t begin = level.first + b * block_size;
       if (l + 1 < levels.size())
         restrict_block(level, b, levels[l + 1], outer.data() + levels[l + 1].first, of_finer.data());
-      divergence_block(level, b, own, of_own.data());
-      divergence_block(level, b, sums, of_all.data());
+      const Divergence divergence = divergence_of_block(level, b, own, sums);
       for (std::size_t i = 0; i < block_size; ++i) {
-        outer[begin + i] = of_finer[i] + of_own[i];
-        load[begin + i] = level.active[b * block_size + i] ? of_finer[i] + of_all[i] : 0.0;
+        outer[begin + i] = of_finer[i] + divergence.own[i];
+        load[begin + i] = level.active[b * block_size + i] ? of_finer[i] + divergence.all[i] : 0.0;
       }
     });
   }

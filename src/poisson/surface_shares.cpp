@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "poisson/surface_shares.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <cmath>
 #include <numbers>
 
@@ -12,12 +10,11 @@
 namespace rhizodont {
 
 std::vector<double> surface_shares(const OrientedPoints& samples, int neighbours) {
-  // Twice as many are looked up, since on a thin sheet every second one lies on the other side.
-  const Neighbours near = nearest_neighbours(samples.points, 2 * static_cast<std::size_t>(neighbours) + 2);
+  // On a thin sheet every second neighbour lies on the other side: where the nearest do not suffice, twice as many are
+  // looked up.
+  const auto few = static_cast<std::size_t>(neighbours) + 1;
   std::vector<double> shares(samples.points.size());
-  tbb::parallel_for(std::size_t{0}, shares.size(), [&](std::size_t i) {
-    const auto indices = near.of(i);
-    const auto distances = near.distances_of(i);
+  visit_neighbours(samples.points, few, 2 * few, [&](std::size_t i, auto indices, auto distances) {
     // A disc with a radius midway between the k-th neighbour and the next holds the sample and k others, whether the
     // samples lie on a lattice or at random; the mean over the outer half of the neighbours takes out the lattice's
     // shells.
@@ -35,6 +32,7 @@ std::vector<double> surface_shares(const OrientedPoints& samples, int neighbours
     }
     // So few of its own sheet nearby: an isolated sample with a disc of its own.
     shares[i] = averaged > 0 ? sum / averaged : std::numbers::pi * last * last / (counted + 1);
+    return counted > neighbours;
   });
   return shares;
 }

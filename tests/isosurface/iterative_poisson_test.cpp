@@ -74,7 +74,7 @@ TEST(MarchingTetrahedra, HasVerticesOnTheSurfaceAndKeepsAllParts) {
   options.every_component = true;
   const TriangleMesh both = marching_tetrahedra(two_balls, 0.0, seeds, options);
   EXPECT_NEAR(volume(both), 2.0 * ball, 0.1 * ball);
-  for (const Point& p : both.vertices) EXPECT_NEAR(two_balls(p).value, 0.0, 0.01);
+  for (const Point& p : both.vertices) EXPECT_NEAR(two_balls(p).value, 0.0, 1e-6);
 }
 
 }  // namespace
