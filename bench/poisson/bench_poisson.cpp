@@ -20,6 +20,7 @@
 #include "mesh/sampling.hpp"
 #include "mesh/self_intersection.hpp"
 #include "pipeline/crown_fit.hpp"
+#include "pipeline/fitted_surface.hpp"
 #include "pipeline/guiding_cloud.hpp"
 #include "poisson/clouds.hpp"
 #include "poisson/orientation.hpp"
@@ -48,17 +49,6 @@ Distances distances(const std::vector<Point>& points, const TriangleMesh& surfac
 OrientedPoints samples_of(const TriangleMesh& mesh, std::size_t count) {
   const SurfaceSamples samples = sample_surface(mesh, count, 1);
   return {samples.points, samples.normals};
-}
-
-TriangleMesh surface_of(const GuidingCloud& cloud, const TriangleMesh& crown, double e) {
-  GuidingSurfaceOptions options;
-  options.isosurface.e = e;
-  const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));
-  TriangleMesh surface = guiding_surface(cloud.samples, cloud.confidence, seeds, options).surface.mesh;
-  CrownFitOptions fit;
-  fit.tolerance = 0.015 * e;
-  fit_to_crown(surface, crown, fit);
-  return surface;
 }
 
 /// Seconds of each part for each validation tooth at e = 0.5.
@@ -104,7 +94,7 @@ void distance(const std::filesystem::path& data) {
     std::size_t crossing = 0, count = 0;
     for (std::size_t i = 0; i < teeth.size(); ++i) {
       TriangleMesh surface;
-      seconds += best_seconds([&] { surface = surface_of(clouds[i], teeth[i].crown, e); }, 1);
+      seconds += best_seconds([&] { surface = fitted_guiding_surface(clouds[i], teeth[i].crown, e).mesh; }, 1);
       const Distances d = distances(teeth[i].crown.vertices, surface);
       mean += d.mean * static_cast<double>(teeth[i].crown.vertices.size());
       count += teeth[i].crown.vertices.size();
