@@ -9,9 +9,12 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +26,8 @@ struct CompleteCommand {
   std::string output;
   std::string report;
   std::string models;
+  std::string skirt = "keep";
+  std::string confidence;
   int fdi = 0;
   int candidates = 1;
   bool quiet = false;
@@ -79,10 +84,38 @@ void print_summary(const CompletedTooth& tooth, const std::string& output) {
   if (const auto& interval = r.root_interval)
     fmt::print("  root length with 80 % probability {:.1f} to {:.1f} mm, apex within {:.1f} mm\n",
                interval->length_low_mm, interval->length_high_mm, interval->apex_radius_mm);
+  const auto skirt = std::count_if(r.dropped_vertices.begin(), r.dropped_vertices.end(),
+                                   [](const DroppedCrownVertex& d) { return d.reason == "skirt"; });
+  if (skirt > 0) fmt::print("  {} vertices dropped as skirt\n", skirt);
   for (const RepairStep& step : r.repairs)
     fmt::print("  repaired: {} ({} vertices, {} triangles)\n", step.action, step.vertices.size(),
                step.triangles.size());
   for (const std::string& warning : r.warnings) fmt::print("  note: {}\n", warning);
+}
+
+/// keep, auto, or the confidence from which a vertex is tooth.
+std::optional<double> skirt_threshold(const std::string& text) {
+  if (text == "keep") return std::nullopt;
+  if (text == "auto") return 0.5;
+  double value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc() || end != text.data() + text.size() || !(value > 0 && value < 1))
+    throw UsageError("--skirt takes keep, auto, or a confidence between 0 and 1.");
+  return value;
+}
+
+/// The input with what the skirt network thinks of its vertices.
+MeshFile confidence_file(const MeshFile& crown, const CompletionRecord& record) {
+  MeshFile file;
+  file.mesh = crown.mesh;
+  VertexAttribute confidence{AttributeType::float32, {}};
+  for (const float c : record.tooth_confidence) confidence.values.push_back(static_cast<double>(c));
+  file.vertex_attributes["confidence"] = std::move(confidence);
+  VertexAttribute kept{AttributeType::uint8, std::vector<double>(crown.mesh.vertices.size(), 0)};
+  for (const int v : record.kept_vertices) kept.values[static_cast<std::size_t>(v)] = 1;
+  file.vertex_attributes["kept"] = std::move(kept);
+  file.comments = {"confidence: that a vertex is tooth and not skirt, 0 to 1; -1 not judged", "kept: 1 in the tooth"};
+  return file;
 }
 
 void run(const CompleteCommand& command) {
@@ -94,6 +127,11 @@ void run(const CompleteCommand& command) {
       CompletionModels::load(command.models.empty() ? default_models_folder() : std::filesystem::path(command.models));
   CompleteOptions options = command.options;
   if (command.fdi != 0) options.fdi = command.fdi;
+  options.skirt = skirt_threshold(command.skirt);
+  if (!command.confidence.empty()) {
+    if (!options.skirt) throw UsageError("A confidence is there only where a skirt is looked for (--skirt auto).");
+    require_savable(command.confidence);
+  }
   const ProgressCallback progress = progress_line(command.quiet);
   std::vector<CompletedTooth> candidates;
   try {
@@ -106,6 +144,10 @@ void run(const CompleteCommand& command) {
   const std::string sha256 = sha256_of_file(command.crown);
   std::vector<std::filesystem::path> written;
   try {
+    if (!command.confidence.empty()) {
+      written.emplace_back(command.confidence);
+      save_mesh(command.confidence, confidence_file(crown, candidates.front().record));
+    }
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       written.push_back(numbered(command.output, i));
       save_mesh(written.back(), as_file(candidates[i]));
@@ -136,6 +178,12 @@ void add_complete_command(CLI::App& app) {
   complete->add_option("--cap", command->options.cap, "A cap that closes the crown's base: drop, keep")
       ->transform(CLI::CheckedTransformer(cap_names))
       ->default_str("drop");
+  complete
+      ->add_option("--skirt", command->skirt,
+                   "Gum and webs around the crown: keep, auto (drop), or drop below this CONFIDENCE of being tooth")
+      ->capture_default_str();
+  complete->add_option("--skirt-confidence", command->confidence,
+                       "Write the crown with the confidence of each vertex to this file (.ply)");
   complete->add_flag("--repair", command->options.repair,
                      "Mend a defective crown first: merges, drops and turns, each listed in the report");
   complete->add_option("--unit", command->options.millimetres_per_unit, "Unit of the crown's file: mm, cm, in, m")

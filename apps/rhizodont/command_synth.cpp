@@ -3,6 +3,7 @@
 #include "atlas/crown_crop.hpp"
 #include "atlas/mean_teeth.hpp"
 #include "atlas/scanner_mesh.hpp"
+#include "atlas/skirt_sample.hpp"
 #include "atlas/tooth_family.hpp"
 #include "commands.hpp"
 #include "evaluation/render.hpp"
@@ -30,6 +31,7 @@ struct SynthCommand {
   std::string atlas;
   bool crowns = false;
   bool clean_cut = false;
+  bool skirts = false;
   double edge_mm = 0;
   std::string crown_format = "ply";
   double noise_mm = 0.005;
@@ -173,6 +175,29 @@ void write_contact_sheet(const SynthCommand& command, const ToothFamilies& famil
   fmt::print("{}\n", command.sheet);
 }
 
+/// Crowns as they are cut from scans, skirts labelled.
+void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
+  const std::filesystem::path folder = command.output;
+  std::filesystem::create_directories(folder);
+  for (const int fdi : command.fdi) {
+    for (int i = 0; i < command.count; ++i) {
+      const std::uint64_t seed = command.seed + static_cast<std::uint64_t>(i);
+      SkirtSampleOptions options;
+      options.type = tooth_type_of_fdi(fdi);
+      if (command.edge_mm > 0) options.finest_edge_mm = options.coarsest_edge_mm = command.edge_mm;
+      const SkirtSample sample = make_skirt_sample(families, seed, options);
+      MeshFile file;
+      file.mesh = sample.mesh;
+      file.vertex_attributes["tooth"] = {AttributeType::uint8, {sample.is_tooth.begin(), sample.is_tooth.end()}};
+      file.comments = {"tooth: 1 on the tooth's surface, 0 skirt; made by rhizodont synth"};
+      const auto name = folder / fmt::format("skirt_{}_{}.ply", fdi, seed);
+      save_mesh(name, file);
+      fmt::print("{}: {} vertices, {} skirt\n", name.string(), sample.is_tooth.size(),
+                 std::count(sample.is_tooth.begin(), sample.is_tooth.end(), 0));
+    }
+  }
+}
+
 void run(const SynthCommand& command) {
   if (command.output.empty() && command.atlas.empty() && command.sheet.empty())
     throw UsageError("Say where to: -o FOLDER for teeth, --sheet PNG for a picture, --atlas FILE for mean crowns.");
@@ -181,7 +206,7 @@ void run(const SynthCommand& command) {
   if (command.edge_mm > 0) options.vertices = 20000;  // finer than the scan to be made
   const ToothFamilies families = load_tooth_families(command.data, options);
   if (!command.atlas.empty()) write_atlas(command, families);
-  if (!command.output.empty()) write_teeth(command, families);
+  if (!command.output.empty()) command.skirts ? write_skirts(command, families) : write_teeth(command, families);
   if (command.output.empty() && !command.sheet.empty()) write_contact_sheet(command, families);
 }
 
@@ -198,6 +223,8 @@ void add_synth_command(CLI::App& app) {
       ->capture_default_str();
   synth->add_option("-o,--output", command->output, "Folder for tooth_FDI_SEED.ply (and crown_FDI_SEED.ply)");
   synth->add_flag("--crowns", command->crowns, "Write the cropped crowns too");
+  synth->add_flag("--skirts", command->skirts,
+                  "Write crowns with skirts instead, labelled (skirt_FDI_SEED.ply); half of them are mirrored");
   synth->add_flag("--clean-cut", command->clean_cut, "Crop just above the cemento-enamel junction, without gaps");
   synth->add_option("--edge", command->edge_mm, "Remesh the crowns like a scan, edge length in mm")
       ->check(CLI::Range(0.1, 1.0));

@@ -28,6 +28,9 @@ struct CompleteOptions {
   std::optional<int> fdi;  ///< 11-18, 21-28, 31-38, 41-48; unset: the type is guessed from shape
   double e = 0.5;          ///< mm, [0.2, 2]: side of the lattice under the guiding surface; new edges are about e / 2
   CapHandling cap = CapHandling::drop;
+  /// (0, 1): vertices of which the skirt network is less sure that they are tooth are dropped as skirt, with a smooth
+  /// border; 0.5 is what it was trained for. Unset: a skirt is kept.
+  std::optional<double> skirt;
   bool repair = false;              ///< mend a defective crown first, where else it would be refused; all is listed
   double millimetres_per_unit = 1;  ///< > 0: of the input's coordinates; the output has the input's unit
   /// mm, [0, 5]: width of the smoothed band beside the crown; unset: from the border's edges and from how far the root
@@ -70,6 +73,11 @@ struct CompletionRecord {
   int crown_triangles = 0;          ///< of the input
   int kept_triangles = 0;
   bool cap_dropped = false;
+  /// Per vertex of the input, 0..1: how sure the skirt network is that it is tooth; -1 where it was not asked. Empty if
+  /// a skirt was to be kept.
+  std::vector<float> tooth_confidence;
+  std::map<std::string, std::string>
+      skirt_model;             ///< what the skirt network's weights say of themselves, if it was asked
   double root_length_mm = 0;   ///< along the growth axis, from the crown's border (lowest point) to the apex
   double tooth_length_mm = 0;  ///< extent along the growth axis
   /// Not there if the user set the length, turned or bent the root, or the weights were never calibrated.
@@ -109,7 +117,8 @@ struct CompletedTooth {
 /// Weights and mean crowns, loaded once and used for many teeth, from several threads if wished.
 class CompletionModels {
  public:
-  /// Reads completion.safetensors and atlas.safetensors from a folder. Throws InputError if one is missing or damaged.
+  /// Reads completion.safetensors and atlas.safetensors from a folder, and skirt.safetensors if it is there. Throws
+  /// InputError if one is missing or damaged.
   static CompletionModels load(const std::filesystem::path& folder);
   CompletionModels(CompletionModels&&) noexcept;
   CompletionModels& operator=(CompletionModels&&) noexcept;

@@ -5,6 +5,7 @@
 #include "atlas/scanner_mesh.hpp"
 
 #include "atlas/random_stream.hpp"
+#include "atlas/remeshing.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/float_bits.hpp"
@@ -48,16 +49,19 @@ TriangleMesh from_surface(const Surface& surface) {
 
 }  // namespace
 
-TriangleMesh scanner_mesh(const TriangleMesh& crown, double edge_mm, double noise_mm, std::uint64_t seed) {
-  if (!(edge_mm >= 0.1 && edge_mm <= 1)) throw UsageError("The edge length of a scan lies between 0.1 and 1 mm.");
-  if (!(noise_mm >= 0 && noise_mm <= 0.1)) throw UsageError("The noise of a scan lies between 0 and 0.1 mm.");
+TriangleMesh remeshed(const TriangleMesh& mesh, double edge_mm) {
   namespace PMP = CGAL::Polygon_mesh_processing;
-  Surface surface = to_surface(crown);
-  // Two rounds only: the triangles stay as irregular as a scanner's.
+  Surface surface = to_surface(mesh);
   PMP::isotropic_remeshing(surface.faces(), edge_mm, surface,
                            PMP::parameters::number_of_iterations(2).number_of_relaxation_steps(1));
   surface.collect_garbage();
-  TriangleMesh mesh = from_surface(surface);
+  return from_surface(surface);
+}
+
+TriangleMesh scanner_mesh(const TriangleMesh& crown, double edge_mm, double noise_mm, std::uint64_t seed) {
+  if (!(edge_mm >= 0.1 && edge_mm <= 1)) throw UsageError("The edge length of a scan lies between 0.1 and 1 mm.");
+  if (!(noise_mm >= 0 && noise_mm <= 0.1)) throw UsageError("The noise of a scan lies between 0 and 0.1 mm.");
+  TriangleMesh mesh = remeshed(crown, edge_mm);
   const auto normals = vertex_normals(mesh);
   RandomStream random(seed, 300);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)

@@ -171,12 +171,26 @@ void fix_signs(Eigen::MatrixXd& vectors) {
   }
 }
 
+/// All eigenvectors of a small mesh at once.
+Eigenbasis dense_eigenbasis(const SurfaceOperators& operators, Eigen::Index wanted) {
+  const Eigen::VectorXd scale = operators.mass.cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd symmetric = scale.asDiagonal() * Eigen::MatrixXd(operators.stiffness) * scale.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solution(symmetric);
+  Eigenbasis basis;
+  basis.values = solution.eigenvalues().head(wanted).cwiseMax(0.0);
+  basis.vectors = scale.asDiagonal() * solution.eigenvectors().leftCols(wanted);
+  fix_signs(basis.vectors);
+  return basis;
+}
+
 }  // namespace
 
 Eigenbasis eigenbasis(const SurfaceOperators& operators, int k) {
   const Eigen::Index n = operators.mass.size(), wanted = k;
   if (k < 1) throw UsageError("An eigenbasis has at least one function.");
   if (2 * wanted + 2 * width > n) throw InputError("The mesh has too few vertices for so many eigenfunctions.");
+  // A Krylov space that soon is all there is converges to nothing better.
+  if (n <= std::max<Eigen::Index>(320, 4 * wanted)) return dense_eigenbasis(operators, wanted);
   constexpr double shift = -0.1;  // beside eigenvalues near 1, 2, 3, ...
   constexpr double tolerance = 1e-6;
   const InverseOperator op(operators, shift);

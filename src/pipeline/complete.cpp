@@ -164,7 +164,7 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   CompletedTooth tooth;
   CompletionRecord& record = tooth.record;
   clock.begin("crown");
-  const KeptCrown crown = take_crown(input, models.atlas, options, record);
+  const KeptCrown crown = take_crown(input, models.atlas, models.skirt, options, record);
 
   clock.begin("frame");
   const CrownFrame frame = find_frame(crown.mesh, models.atlas, options, record);

@@ -15,8 +15,12 @@ CompletionModels& CompletionModels::operator=(CompletionModels&&) noexcept = def
 CompletionModels::~CompletionModels() = default;
 
 CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
-  return CompletionModels(std::make_unique<Content>(
-      Content{load_atlas(folder / "atlas.safetensors"), CompletionNetwork::load(folder / "completion.safetensors")}));
+  auto content =
+      std::make_unique<Content>(Content{load_atlas(folder / "atlas.safetensors"),
+                                        CompletionNetwork::load(folder / "completion.safetensors"), std::nullopt});
+  if (const auto skirt = folder / "skirt.safetensors"; std::filesystem::exists(skirt))
+    content->skirt = SurfaceNetwork::load(skirt);
+  return CompletionModels(std::move(content));
 }
 
 namespace {

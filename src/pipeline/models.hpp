@@ -4,13 +4,17 @@
 
 #include "completion/frame.hpp"
 #include "learning/completion_network.hpp"
+#include "learning/surface_network.hpp"
 #include "rhizodont/complete.hpp"
+
+#include <optional>
 
 namespace rhizodont {
 
 struct CompletionModels::Content {
   Atlas atlas;
   CompletionNetwork network;
+  std::optional<SurfaceNetwork> skirt;
 };
 
 }  // namespace rhizodont

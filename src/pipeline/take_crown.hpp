@@ -3,6 +3,7 @@
 #pragma once
 
 #include "completion/frame.hpp"
+#include "learning/surface_network.hpp"
 #include "rhizodont/complete.hpp"
 #include "skirt/skirt.hpp"
 
@@ -11,7 +12,8 @@ namespace rhizodont {
 /// What the tooth will keep of an input: in millimetres, repaired if asked for, open at the base, its border made of
 /// simple loops. Vertex numbers in the result are the input's. Notes in the record what was kept, dropped and repaired.
 /// Throws InputError where there is no crown that a root can be joined to.
-KeptCrown take_crown(const TriangleMesh& input, const Atlas& atlas, const CompleteOptions& options,
-                     CompletionRecord& record);
+/// `skirt`: judges the crown if `options.skirt` is set; UsageError if it is not there then.
+KeptCrown take_crown(const TriangleMesh& input, const Atlas& atlas, const std::optional<SurfaceNetwork>& skirt,
+                     const CompleteOptions& options, CompletionRecord& record);
 
 }  // namespace rhizodont

@@ -1,0 +1,244 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// S. Katz, A. Tal, "Hierarchical mesh decomposition using fuzzy clustering and cuts", ACM Transactions on Graphics
+// 22(3),
+//   2003: boundaries between regions of a mesh as minimum cuts along bent edges.
+#include "skirt/skirt_border.hpp"
+
+#include "mesh/adjacency.hpp"
+#include "mesh/geometry.hpp"
+#include "rhizodont/error.hpp"
+#include "skirt/minimum_cut.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+namespace rhizodont {
+namespace {
+
+double log_odds(double p) {
+  p = std::clamp(p, 0.01, 0.99);  // no single vertex outweighs its surroundings
+  return std::log(p / (1 - p));
+}
+
+/// How much an edge is bent, radians: negative inwards, as in the crease between tooth and gum.
+double edge_bend(const TriangleMesh& mesh, const EdgeTable& table, std::size_t edge) {
+  if (table.triangle_count(edge) != 2) return 0;
+  const auto [a, b] = table.vertices[edge];
+  const Eigen::Vector3d along = mesh.vertices[static_cast<std::size_t>(b)] - mesh.vertices[static_cast<std::size_t>(a)];
+  const auto at = static_cast<std::size_t>(table.first[edge]);
+  const int g = table.half_edges[at], h = table.half_edges[at + 1];
+  const Eigen::Vector3d first = triangle_normal(mesh, static_cast<std::size_t>(half_edge_triangle(g)));
+  const Eigen::Vector3d second = triangle_normal(mesh, static_cast<std::size_t>(half_edge_triangle(h)));
+  const Eigen::Vector3d into_first = (half_edge_from(mesh, g) == a ? 1 : -1) * first.cross(along).normalized();
+  return std::atan2(-second.dot(into_first), second.dot(first));
+}
+
+/// Per vertex how sharp a crease passes through it, radians: the second of its edges by their bend inwards, since a
+/// crease has two edges at a vertex and noise rarely has.
+std::vector<double> creases(const TriangleMesh& mesh, const EdgeTable& table) {
+  std::vector<std::array<double, 2>> sharpest(mesh.vertices.size(), {0, 0});
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    const double inwards = -edge_bend(mesh, table, e);
+    for (const int v : table.vertices[e]) {
+      auto& [first, second] = sharpest[static_cast<std::size_t>(v)];
+      if (inwards > first)
+        second = std::exchange(first, inwards);
+      else
+        second = std::max(second, inwards);
+    }
+  }
+  std::vector<double> crease;
+  for (const auto& [first, second] : sharpest) crease.push_back(second);
+  return crease;
+}
+
+/// What a border across each edge of the mesh costs: the length of the edge's dual, less beside a crease.
+std::vector<CutEdge> cut_edges(const TriangleMesh& mesh, const SkirtBorderOptions& options) {
+  const EdgeTable table = edge_table(mesh);
+  const std::vector<double> crease = creases(mesh, table);
+  std::vector<CutEdge> edges;
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    const auto [a, b] = table.vertices[e];
+    const double length =
+        (mesh.vertices[static_cast<std::size_t>(b)] - mesh.vertices[static_cast<std::size_t>(a)]).norm();
+    double area = 0;
+    for (int i = table.first[e]; i < table.first[e + 1]; ++i)
+      area += triangle_area(
+          mesh, static_cast<std::size_t>(half_edge_triangle(table.half_edges[static_cast<std::size_t>(i)])));
+    const double inwards = std::max(crease[static_cast<std::size_t>(a)], crease[static_cast<std::size_t>(b)]) /
+                           (options.crease * std::numbers::pi / 180);
+    const double cheap = 0.2 + 0.8 * std::exp(-inwards * inwards);
+    edges.push_back({a, b, options.smoothness * cheap * (2.0 / 3) * area / std::max(length, 1e-9)});
+  }
+  return edges;
+}
+
+std::vector<double> vertex_areas(const TriangleMesh& mesh) {
+  std::vector<double> areas(mesh.vertices.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const int v : mesh.triangles[t]) areas[static_cast<std::size_t>(v)] += triangle_area(mesh, t) / 3;
+  return areas;
+}
+
+std::vector<bool> triangles_of(const TriangleMesh& mesh, const std::vector<bool>& is_tooth) {
+  std::vector<bool> keep;
+  for (const Triangle& t : mesh.triangles)
+    keep.push_back(std::all_of(t.begin(), t.end(), [&](int v) { return is_tooth[static_cast<std::size_t>(v)]; }));
+  return keep;
+}
+
+/// Vertices joined by edges that are on one side: the number of each one's piece, and how many there are.
+std::pair<std::vector<int>, int> pieces_of_vertices(const TriangleMesh& mesh, const std::vector<bool>& is_tooth) {
+  std::vector<int> parent(mesh.vertices.size());
+  std::iota(parent.begin(), parent.end(), 0);
+  const auto find = [&](int v) {
+    while (parent[static_cast<std::size_t>(v)] != v) {
+      int& up = parent[static_cast<std::size_t>(v)];
+      v = up = parent[static_cast<std::size_t>(up)];
+    }
+    return v;
+  };
+  for (const Triangle& t : mesh.triangles)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int a = t[i], b = t[(i + 1) % 3];
+      if (is_tooth[static_cast<std::size_t>(a)] == is_tooth[static_cast<std::size_t>(b)])
+        parent[static_cast<std::size_t>(find(a))] = find(b);
+    }
+  std::vector<int> piece(mesh.vertices.size()), number(mesh.vertices.size(), -1);
+  int count = 0;
+  for (std::size_t v = 0; v < piece.size(); ++v) {
+    int& id = number[static_cast<std::size_t>(find(static_cast<int>(v)))];
+    if (id < 0) id = count++;
+    piece[v] = id;
+  }
+  return {piece, count};
+}
+
+/// Vertices of the longest connected part of the border.
+std::vector<bool> outer_border(const TriangleMesh& mesh) {
+  const EdgeTable table = edge_table(mesh);
+  std::vector<std::vector<int>> next(mesh.vertices.size());
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    if (table.triangle_count(e) != 1) continue;
+    const auto [a, b] = table.vertices[e];
+    next[static_cast<std::size_t>(a)].push_back(b);
+    next[static_cast<std::size_t>(b)].push_back(a);
+  }
+  std::vector<bool> seen(mesh.vertices.size(), false), longest;
+  double best = -1;
+  for (std::size_t seed = 0; seed < next.size(); ++seed) {
+    if (seen[seed] || next[seed].empty()) continue;
+    std::vector<int> stack{static_cast<int>(seed)};
+    std::vector<bool> part(mesh.vertices.size(), false);
+    double length = 0;
+    seen[seed] = part[seed] = true;
+    while (!stack.empty()) {
+      const int v = stack.back();
+      stack.pop_back();
+      for (const int w : next[static_cast<std::size_t>(v)]) {
+        length += (mesh.vertices[static_cast<std::size_t>(v)] - mesh.vertices[static_cast<std::size_t>(w)]).norm() / 2;
+        if (seen[static_cast<std::size_t>(w)]) continue;
+        seen[static_cast<std::size_t>(w)] = part[static_cast<std::size_t>(w)] = true;
+        stack.push_back(w);
+      }
+    }
+    if (length > best) {
+      best = length;
+      longest = std::move(part);
+    }
+  }
+  if (longest.empty()) longest.assign(mesh.vertices.size(), false);
+  return longest;
+}
+
+/// One piece of tooth; skirt only where it comes from the outer border.
+void remove_islands(const TriangleMesh& mesh, const std::vector<bool>& outer, const std::vector<double>& areas,
+                    std::vector<bool>& is_tooth) {
+  const auto [piece, count] = pieces_of_vertices(mesh, is_tooth);
+  std::vector<double> area(static_cast<std::size_t>(count), 0);
+  std::vector<bool> tooth(static_cast<std::size_t>(count), false), reaches(static_cast<std::size_t>(count), false);
+  for (std::size_t v = 0; v < piece.size(); ++v) {
+    const auto p = static_cast<std::size_t>(piece[v]);
+    area[p] += areas[v];
+    tooth[p] = is_tooth[v];
+    if (outer[v]) reaches[p] = true;
+  }
+  int largest = -1;
+  for (int p = 0; p < count; ++p)
+    if (tooth[static_cast<std::size_t>(p)] &&
+        (largest < 0 || area[static_cast<std::size_t>(p)] > area[static_cast<std::size_t>(largest)]))
+      largest = p;
+  for (std::size_t v = 0; v < piece.size(); ++v) {
+    const auto p = static_cast<std::size_t>(piece[v]);
+    is_tooth[v] = tooth[p] ? piece[v] == largest : !reaches[p];
+  }
+}
+
+/// Handles of the kept part: a disc with h of them and k further holes has V - E + F = 1 - 2 h - k.
+int handles(const TriangleMesh& mesh, const std::vector<bool>& keep) {
+  const Submesh part = submesh(mesh, keep);
+  if (part.mesh.triangles.empty()) return 0;
+  try {
+    const auto count = [](std::size_t size) { return static_cast<int>(size); };
+    const int euler =
+        count(part.mesh.vertices.size()) - count(edge_table(part.mesh).size()) + count(part.mesh.triangles.size());
+    return (2 - euler - count(border_loops(part.mesh).size())) / 2;
+  } catch (const InputError&) {
+    return 0;  // loops touch: what hangs on the rest by a vertex is taken off later
+  }
+}
+
+std::vector<bool> cut(const std::vector<float>& confidence, const std::vector<double>& areas,
+                      const std::vector<CutEdge>& edges, double bias) {
+  std::vector<double> cost_tooth, cost_skirt;
+  for (std::size_t v = 0; v < areas.size(); ++v) {
+    const double odds = log_odds(static_cast<double>(confidence[v])) - bias;
+    cost_tooth.push_back(areas[v] * std::max(-odds, 0.0));
+    cost_skirt.push_back(areas[v] * std::max(odds, 0.0));
+  }
+  std::vector<bool> is_skirt = minimum_cut(cost_skirt, cost_tooth, edges);  // the smallest skirt of equal cuts
+  is_skirt.flip();
+  return is_skirt;
+}
+
+}  // namespace
+
+std::vector<bool> tooth_triangles(const TriangleMesh& crown, const std::vector<float>& confidence,
+                                  const SkirtBorderOptions& options) {
+  if (!(options.threshold > 0 && options.threshold < 1))
+    throw UsageError("The confidence for a skirt lies between 0 and 1.");
+  if (!(options.smoothness >= 0) || !(options.crease > 0))
+    throw UsageError("A skirt's border needs a smoothness >= 0.");
+  if (confidence.size() != crown.vertices.size())
+    throw UsageError("There must be one confidence for each vertex of the crown.");
+  const std::vector<double> areas = vertex_areas(crown);
+  const std::vector<CutEdge> edges = cut_edges(crown, options);
+  const std::vector<bool> outer = outer_border(crown);
+  std::vector<bool> keep;
+  for (double bias = log_odds(options.threshold), strictest = bias + 3; bias <= strictest; bias += 1) {
+    std::vector<bool> is_tooth = cut(confidence, areas, edges, bias);
+    remove_islands(crown, outer, areas, is_tooth);
+    const std::vector<bool> stricter = triangles_of(crown, is_tooth);
+    if (keep.empty()) keep = stricter;
+    if (handles(crown, stricter) > 0) continue;
+    keep = stricter;
+    break;
+  }
+  double kept = 0, all = 0;
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    const double area = triangle_area(crown, t);
+    all += area;
+    if (keep[t]) kept += area;
+  }
+  if (kept < options.least_kept * all)
+    throw InputError("Hardly any of the crown was recognised as tooth: if it is one, keep its skirt (--skirt keep).");
+  return keep;
+}
+
+}  // namespace rhizodont
