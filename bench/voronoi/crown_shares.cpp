@@ -45,7 +45,7 @@ CrownCase prepare(const TriangleMesh& input, int fdi, const CompletionModels::Co
   options.fdi = fdi;
   CompletionRecord record;
   CrownCase result;
-  result.crown = take_crown(input, models.atlas, options, record).mesh;
+  result.crown = take_crown(input, models.atlas, std::nullopt, options, record).mesh;
   const CrownFrame frame =
       canonical_frame(result.crown, fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))]);
   const PredictedTooth predicted = complete_points(result.crown, fdi, frame.frame, models.network);

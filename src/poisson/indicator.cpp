@@ -95,7 +95,7 @@ Depths depths_of(const std::vector<Point>& points, std::span<const double> share
     const double depth = std::clamp(layout.count - 1 - std::log2(width / finest), 0.0, layout.count - 1.0);
     depths.width.push_back(width);
     depths.depth.push_back(depth);
-    depths.reach.push_back({points[s], static_cast<int>(std::ceil(depth))});
+    depths.reach.push_back({points[s], static_cast<int>(std::round(depth))});
   }
   return depths;
 }
