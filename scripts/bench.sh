@@ -19,7 +19,7 @@ run() {
   printf '\n## %s\n\n' "$1"
   shift
   printf '`%s`\n\n' "$*"
-  "$@"
+  "$@" | sed -E 's/^(#+ )/#\1/'  # its headings one level down
 }
 
 cat << END
