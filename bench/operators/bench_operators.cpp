@@ -8,6 +8,7 @@
 
 #include <fmt/core.h>
 
+#include <cstdio>
 #include <map>
 
 namespace {
@@ -40,6 +41,7 @@ void print_row(const TriangleMesh& mesh) {
   for (const int k : {32, 64, 128})
     fmt::print(" {:.3f} |", median_seconds([&] { eigenbasis(operators, k); }, mesh.vertices.size() > 50000 ? 1 : 3));
   fmt::print("\n");
+  std::fflush(stdout);
 }
 
 }  // namespace
@@ -50,16 +52,12 @@ int main(int argc, char** argv) {
     return 2;
   }
   fmt::print("| vertices | operators, s | k = 32, s | k = 64, s | k = 128, s |\n|---|---|---|---|---|\n");
-  const auto teeth = load_validation_teeth(argv[1]);
-  for (const BenchTooth& tooth : teeth) {
-    if (tooth.fdi == 44) {
-      print_row(tooth.crown);
-      print_row(refined(tooth.crown));
+  for (const int fdi : {44, 36}) {
+    for (const BenchTooth& tooth : load_validation_teeth(argv[1])) {
+      if (tooth.fdi != fdi) continue;
+      TriangleMesh crown = fdi == 44 ? tooth.crown : refined(tooth.crown);
+      for (int i = 0; i < (fdi == 44 ? 2 : 3); ++i, crown = refined(crown)) print_row(crown);
     }
-    if (tooth.fdi != 36) continue;
-    print_row(refined(tooth.crown));
-    print_row(refined(refined(tooth.crown)));
-    print_row(refined(refined(refined(tooth.crown))));
   }
   return 0;
 }

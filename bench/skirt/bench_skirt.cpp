@@ -14,6 +14,7 @@
 
 #include <fmt/core.h>
 
+#include <cstdio>
 #include <map>
 
 namespace {
@@ -49,6 +50,7 @@ void print_times(const TriangleMesh& crown, const SurfaceNetwork& network, std::
   const double taking = median_seconds([&] { keep_crown(crown, keep, "skirt"); }, repeats);
   fmt::print("| {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} |\n", crown.vertices.size(), judging, border, taking,
              judging + border + taking);
+  std::fflush(stdout);
   sizes.push_back(static_cast<double>(crown.vertices.size()));
   seconds.push_back(judging + border + taking);
 }
@@ -117,6 +119,6 @@ int main(int argc, char** argv) {
     for (int i = 0; i < (tooth.fdi == 36 ? 3 : 2); ++i, crown = refined(crown))
       print_times(crown, network, sizes, seconds);
   }
-  print_agreement(load_tooth_families(argv[1]), network, 40);
+  print_agreement(load_tooth_families(argv[1]), network, 24);
   return 0;
 }

@@ -129,12 +129,17 @@ class KrylovSpace {
   const Eigen::MatrixXd& rest() const { return rest_; }
 
  private:
+  /// Nearly all of an image lies in the two newest blocks: once these are gone, one pass over the whole space leaves no
+  /// more than rounding of what is left.
   Eigen::MatrixXd remove_part_in_space(Block& block) {
+    const Eigen::Index newest = std::min<Eigen::Index>(2 * width, size_);
+    const auto recent = space_.middleCols(size_ - newest, newest);
+    const Eigen::MatrixXd first = recent.transpose() * block;
+    block.noalias() -= recent * first;
     Eigen::MatrixXd part = basis().transpose() * block;
     block.noalias() -= basis() * part;
-    const Eigen::MatrixXd again = basis().transpose() * block;
-    block.noalias() -= basis() * again;
-    return part + again;
+    part.bottomRows(newest) += first;
+    return part;
   }
 
   static Eigen::MatrixXd triangular_factor(const Block& block) {
@@ -148,7 +153,8 @@ class KrylovSpace {
     const Eigen::HouseholderQR<Eigen::MatrixXd> qr(block);
     Eigen::MatrixXd columns = qr.householderQ() * Eigen::MatrixXd::Identity(block.rows(), width);
     const Eigen::MatrixXd upper = qr.matrixQR().topRows(width).triangularView<Eigen::Upper>();
-    if (at > 0) {  // the QR of a block with a dependent column may lead back into the space
+    const Eigen::VectorXd sizes = upper.diagonal().cwiseAbs();
+    if (at > 0 && sizes.minCoeff() < 1e-5 * sizes.maxCoeff()) {  // a column that is all but rounding may lead back
       columns -= space_.leftCols(at) * (space_.leftCols(at).transpose() * columns).eval();
       columns.colwise().normalize();
     }
@@ -196,7 +202,7 @@ Eigenbasis eigenbasis(const SurfaceOperators& operators, int k) {
   const InverseOperator op(operators, shift);
   const Eigen::Index most = std::min(n / width * width, 8 * wanted + 20 * width);
   KrylovSpace krylov(op, n, most);
-  Eigen::Index next_look = 7 * wanted / 4 + 4 * width;
+  Eigen::Index next_look = 5 * wanted / 2 + 6 * width;
   for (;;) {
     krylov.extend();
     const bool last = krylov.complete() + width > most;
@@ -208,7 +214,7 @@ Eigenbasis eigenbasis(const SurfaceOperators& operators, int k) {
     const Eigen::VectorXd theta = solution.eigenvalues().tail(wanted);
     const bool good = (leaving.colwise().norm().transpose().array() <= tolerance * theta.array()).all();
     if (!good && !last) {
-      next_look = size + std::max(width, wanted / 4);
+      next_look = size + std::max(width, wanted / 8);
       continue;
     }
     if (!good) throw InputError("The mesh is too degenerate: the eigenfunctions of its surface were not found.");

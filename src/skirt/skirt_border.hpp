@@ -9,10 +9,10 @@
 namespace rhizodont {
 
 struct SkirtBorderOptions {
-  double threshold = 0.5;    ///< (0, 1): confidence from which a vertex alone counts as tooth
-  double smoothness = 0.35;  ///< mm, >= 0: what a millimetre of border costs, beside mm^2 of surface on the wrong side
-  double crease = 15;        ///< degrees, > 0: across edges bent inwards by more than this the border costs little
-  double least_kept = 0.3;   ///< [0, 1]: share of the area; where less would be kept, the crown is refused
+  double threshold = 0.5;   ///< (0, 1): confidence from which a vertex alone counts as tooth
+  double smoothness = 0.2;  ///< mm, >= 0: what a millimetre of border costs, beside mm^2 of surface on the wrong side
+  double crease = 15;       ///< degrees, > 0: across edges bent inwards by more than this the border costs little
+  double least_kept = 0.3;  ///< [0, 1]: share of the area; where less would be kept, the crown is refused
 };
 
 /// Divides a crown into tooth and skirt as a technician would: near the network's confidence (per vertex, 0..1, "is
