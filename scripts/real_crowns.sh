@@ -15,7 +15,7 @@ program=build/apps/rhizodont/rhizodont
 mkdir -p "$out"
 bad=0
 for group in validation crowns/patient0 crowns/patient1 lower_scan; do
-  done_here=0 all=0 kept=0 triangles=0 skirt=0 most=0 opened=0
+  done_here=0 all=0 kept=0 triangles=0 good=0 skirt=0 most=0 opened=0
   for crown in "$data/$group"/crown_*.ply; do
     name=$(basename "${crown%.ply}")
     fdi=${name#crown_}
@@ -25,12 +25,12 @@ for group in validation crowns/patient0 crowns/patient1 lower_scan; do
     "$program" complete "$crown" --fdi "$fdi" -o "$tooth" --report "${tooth%.ply}.json" --quiet "$@" 2> "${tooth%.ply}.txt"
     code=$?
     if [ $code -eq 0 ]; then
-      read -r k n <<< "$("$program" check "$crown" "$tooth" --json | /usr/bin/python3 -c '
+      read -r k n p <<< "$("$program" check "$crown" "$tooth" --json | /usr/bin/python3 -c '
 import json, sys
-crown = json.load(sys.stdin)["crown"]
-print(crown["kept_triangles"], crown["triangles"])')"
+report = json.load(sys.stdin)
+print(report["crown"]["kept_triangles"], report["crown"]["triangles"], int(report["promise_3_holds"]))')"
       if "$program" check "$crown" "$tooth" > /dev/null; then
-        done_here=$((done_here + 1)) kept=$((kept + k)) triangles=$((triangles + n))
+        done_here=$((done_here + 1)) kept=$((kept + k)) triangles=$((triangles + n)) good=$((good + p))
         # Vertices dropped as skirt, of those that no cap had.
         read -r s o share <<< "$(/usr/bin/python3 -c '
 import json, sys
@@ -49,7 +49,7 @@ print(skirt, opened, round(10000 * skirt / opened))' "${tooth%.ply}.json")"
       [ -e "$tooth" ] && echo "$tooth was written all the same" && bad=1
     fi
   done
-  echo "$group: $done_here of $all completed, $kept of $triangles triangles kept, $skirt of $opened vertices beside caps dropped as skirt," \
+  echo "$group: $done_here of $all completed, promise 3 kept on $good, $kept of $triangles triangles kept, $skirt of $opened vertices beside caps dropped as skirt," \
     "$((most / 100)).$(printf %02d $((most % 100))) % of the worst crown"
 done
 exit $bad
