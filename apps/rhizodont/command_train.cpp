@@ -110,7 +110,7 @@ differ). To that extent figures on those teeth are not blind. No weight was trai
 The weights are derived from these templates and crown models: keep the attribution when you pass them on.
 
 ## Training
-`rhizodont train --data DATA --out training/run1 --seed {4}`, {5} samples in {6} steps; settings in
+`rhizodont train --data DATA --out FOLDER --seed {4}`, {5} samples in {6} steps; settings in
 `src/learning/train_completion.hpp`, exported on {7}.
 
 ## Figures
