@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <exception>
+#include <map>
+#include <utility>
 
 namespace rhizodont {
 
@@ -31,6 +33,25 @@ BenchTooth load_largest_validation_tooth(const std::filesystem::path& data_folde
   return *std::max_element(teeth.begin(), teeth.end(), [](const BenchTooth& a, const BenchTooth& b) {
     return a.crown.vertices.size() < b.crown.vertices.size();
   });
+}
+
+TriangleMesh refined(const TriangleMesh& mesh) {
+  TriangleMesh fine;
+  fine.vertices = mesh.vertices;
+  std::map<std::pair<int, int>, int> middles;
+  const auto middle = [&](int a, int b) {
+    const auto [place, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<int>(fine.vertices.size()));
+    if (is_new)
+      fine.vertices.push_back(
+          0.5 * (mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)]));
+    return place->second;
+  };
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    fine.triangles.insert(fine.triangles.end(),
+                          {Triangle{a, ab, ca}, Triangle{ab, b, bc}, Triangle{ca, bc, c}, Triangle{ab, bc, ca}});
+  }
+  return fine;
 }
 
 int run_on_data_folder(int argc, char** argv, const std::function<void(const std::filesystem::path&)>& benchmark) {

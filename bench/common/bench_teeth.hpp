@@ -24,6 +24,9 @@ std::vector<BenchTooth> load_validation_teeth(const std::filesystem::path& data_
 /// The largest of the validation teeth, a molar: where one tooth stands for all. Throws as `load_validation_teeth`.
 BenchTooth load_largest_validation_tooth(const std::filesystem::path& data_folder);
 
+/// Every triangle cut in four.
+TriangleMesh refined(const TriangleMesh& mesh);
+
 /// Runs a benchmark whose only argument is the data folder; says on standard error how to call it and what went wrong.
 /// Returns the program's exit code.
 int run_on_data_folder(int argc, char** argv, const std::function<void(const std::filesystem::path&)>& benchmark);

@@ -9,31 +9,10 @@
 #include <fmt/core.h>
 
 #include <cstdio>
-#include <map>
 
 namespace {
 
 using namespace rhizodont;
-
-/// Every triangle cut in four.
-TriangleMesh refined(const TriangleMesh& mesh) {
-  TriangleMesh fine;
-  fine.vertices = mesh.vertices;
-  std::map<std::pair<int, int>, int> middles;
-  const auto middle = [&](int a, int b) {
-    const auto [place, is_new] = middles.try_emplace(std::minmax(a, b), static_cast<int>(fine.vertices.size()));
-    if (is_new)
-      fine.vertices.push_back(
-          0.5 * (mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)]));
-    return place->second;
-  };
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-    fine.triangles.insert(fine.triangles.end(),
-                          {Triangle{a, ab, ca}, Triangle{ab, b, bc}, Triangle{ca, bc, c}, Triangle{ab, bc, ca}});
-  }
-  return fine;
-}
 
 void print_row(const TriangleMesh& mesh) {
   const SurfaceOperators operators = surface_operators(mesh);

@@ -23,6 +23,7 @@
 #include "pipeline/fitted_surface.hpp"
 #include "pipeline/guiding_cloud.hpp"
 #include "poisson/clouds.hpp"
+#include "poisson/distances.hpp"
 #include "poisson/orientation.hpp"
 #include "poisson/peer_table.hpp"
 #include "rhizodont/error.hpp"
@@ -30,21 +31,6 @@
 
 namespace rhizodont {
 namespace {
-
-struct Distances {
-  double mean = 0, most = 0;
-};
-
-Distances distances(const std::vector<Point>& points, const TriangleMesh& surface) {
-  const ClosestPointIndex index(surface);
-  Distances result;
-  for (const Point& p : points) {
-    const double d = index.closest(p).distance;
-    result.mean += d / static_cast<double>(points.size());
-    result.most = std::max(result.most, d);
-  }
-  return result;
-}
 
 OrientedPoints samples_of(const TriangleMesh& mesh, std::size_t count) {
   const SurfaceSamples samples = sample_surface(mesh, count, 1);
@@ -95,7 +81,7 @@ void distance(const std::filesystem::path& data) {
     for (std::size_t i = 0; i < teeth.size(); ++i) {
       TriangleMesh surface;
       seconds += best_seconds([&] { surface = fitted_guiding_surface(clouds[i], teeth[i].crown, e).mesh; }, 1);
-      const Distances d = distances(teeth[i].crown.vertices, surface);
+      const Distances d = distances(teeth[i].crown.vertices, ClosestPointIndex(surface));
       mean += d.mean * static_cast<double>(teeth[i].crown.vertices.size());
       count += teeth[i].crown.vertices.size();
       most = std::max(most, d.most);

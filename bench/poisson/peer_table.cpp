@@ -17,6 +17,7 @@
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
 #include "poisson/clouds.hpp"
+#include "poisson/distances.hpp"
 #include "poisson/indicator.hpp"
 #include "poisson/peers.hpp"
 
@@ -25,20 +26,6 @@ namespace {
 
 constexpr std::size_t sample_count = 20000;
 constexpr int repeats = 3;
-
-struct Distances {
-  double mean = 0, most = 0;
-};
-
-Distances distances(const std::vector<Point>& points, const ClosestPointIndex& surface) {
-  Distances result;
-  for (const Point& p : points) {
-    const double d = surface.closest(p).distance;
-    result.mean += d / static_cast<double>(points.size());
-    result.most = std::max(result.most, d);
-  }
-  return result;
-}
 
 /// The true surface, with points on it that no method has seen.
 struct Truth {

@@ -113,8 +113,10 @@ class Trial {
   Trial(const std::filesystem::path& data, const std::filesystem::path& models, std::uint64_t teeth_per_type)
       : families_(load_tooth_families(data, fine())),
         models_(CompletionModels::load(models)),
-        templates_(data / "templates"),
-        teeth_per_type_(teeth_per_type) {}
+        teeth_per_type_(teeth_per_type) {
+    for (int type = 0; type < tooth_type_count; ++type)
+      templates_.push_back(load_template_tooth(data / "templates", fdi_of_type(type, false)));
+  }
 
   Step take(const Factor& factor, double value) const {
     Scan scan = plain_scan();
@@ -149,14 +151,14 @@ class Trial {
     options.fdi = fdi_of_type(tooth.type, false);
     const Eigen::Vector3d axis = crown_growth_axis(crown);
     const TriangleMesh ours = complete_tooth(crown, models_, options).mesh;
-    const TriangleMesh simple = fit_template(crown, load_template_tooth(templates_, *options.fdi));
+    const TriangleMesh simple = fit_template(crown, templates_[static_cast<std::size_t>(tooth.type)]);
     step.ours.add(root_figures(crown, tooth.mesh, ours, axis));
     step.simple.add(root_figures(crown, tooth.mesh, simple, axis));
   }
 
   ToothFamilies families_;
   CompletionModels models_;
-  std::filesystem::path templates_;
+  std::vector<TemplateTooth> templates_;  // by type
   std::uint64_t teeth_per_type_;
 };
 

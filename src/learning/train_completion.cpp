@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "learning/adapointr.hpp"
+#include "learning/checkpoint.hpp"
 #include "learning/losses.hpp"
 #include "learning/optimiser.hpp"
 #include "learning/process_group.hpp"
@@ -296,20 +297,12 @@ void Trainer::save_best(const std::map<std::string, std::string>& figures) const
 void Trainer::save_checkpoint() const {
   if (options_.folder.empty()) return;
   TensorFile file;
-  for (const TrainedTensor& tensor : tensors_) {
-    file.tensors["value." + tensor.name] = store_tensor(tensor.value, TensorType::float32);
-    file.tensors["mean." + tensor.name] = store_tensor(tensor.mean, TensorType::float32);
-    file.tensors["square." + tensor.name] = store_tensor(tensor.square, TensorType::float32);
-    file.tensors["average." + tensor.name] = store_tensor(tensor.average, TensorType::float32);
-  }
+  store_progress(tensors_, {result_.samples, result_.steps, result_.best_root_chamfer}, file);
   for (std::size_t type = 0; type < layouts_.size(); ++type)
     file.tensors["layout." + std::to_string(type)] =
         store_integers(layouts_[type], {static_cast<std::int64_t>(layouts_[type].size())});
   note_shape(options_.shape, file.metadata);
-  file.metadata["training.samples"] = std::to_string(result_.samples);
-  file.metadata["training.steps"] = std::to_string(result_.steps);
   file.metadata["training.seed"] = std::to_string(options_.seed);
-  file.metadata["training.best"] = std::to_string(result_.best_root_chamfer);
   write_safetensors(options_.folder / checkpoint_name, file);
 }
 
@@ -329,30 +322,16 @@ bool Trainer::load_checkpoint() {
   std::map<std::string, std::string> wanted;
   note_shape(options_.shape, wanted);
   wanted["training.seed"] = std::to_string(options_.seed);
-  for (const auto& [key, value] : wanted) {
-    const auto found = file.metadata.find(key);
-    if (found == file.metadata.end() || found->second != value)
-      throw InputError("The checkpoint in " + options_.folder.string() + " was made with another " + key + ".");
-  }
-  for (TrainedTensor& tensor : tensors_) {
-    load_tensor(file, "value." + tensor.name, tensor.value);
-    load_tensor(file, "mean." + tensor.name, tensor.mean);
-    load_tensor(file, "square." + tensor.name, tensor.square);
-    load_tensor(file, "average." + tensor.name, tensor.average);
-  }
+  const TrainingProgress progress = load_progress(file, wanted, options_.folder, tensors_);
   for (int type = 0; type < tooth_types; ++type) {
     const auto found = file.tensors.find("layout." + std::to_string(type));
     if (found == file.tensors.end() || found->second.type != TensorType::int32)
       throw InputError("The checkpoint in " + options_.folder.string() + " lacks the layout of the output.");
     layouts_.push_back(load_integers(found->second));
   }
-  try {
-    result_.samples = std::stoull(file.metadata.at("training.samples"));
-    result_.steps = std::stoull(file.metadata.at("training.steps"));
-    result_.best_root_chamfer = std::stod(file.metadata.at("training.best"));
-  } catch (const std::logic_error&) {
-    throw InputError("The checkpoint in " + options_.folder.string() + " does not say how far it came.");
-  }
+  result_.samples = progress.samples;
+  result_.steps = progress.steps;
+  result_.best_root_chamfer = progress.best;
   log("going on from " + std::to_string(result_.samples) + " samples");
   return true;
 }

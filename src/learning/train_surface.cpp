@@ -13,6 +13,7 @@
 #include <numbers>
 #include <random>
 
+#include "learning/checkpoint.hpp"
 #include "learning/diffusion_net.hpp"
 #include "learning/optimiser.hpp"
 #include "learning/safetensors.hpp"
@@ -271,17 +272,9 @@ void SurfaceTrainer::validate() {
 void SurfaceTrainer::save_checkpoint() const {
   if (options_.folder.empty()) return;
   TensorFile file;
-  for (const TrainedTensor& tensor : tensors_) {
-    file.tensors["value." + tensor.name] = store_tensor(tensor.value, TensorType::float32);
-    file.tensors["mean." + tensor.name] = store_tensor(tensor.mean, TensorType::float32);
-    file.tensors["square." + tensor.name] = store_tensor(tensor.square, TensorType::float32);
-    file.tensors["average." + tensor.name] = store_tensor(tensor.average, TensorType::float32);
-  }
+  store_progress(tensors_, {result_.samples, result_.steps, result_.best.intersection}, file);
   note_surface_shape(options_.shape, file.metadata);
-  file.metadata["training.samples"] = std::to_string(result_.samples);
-  file.metadata["training.steps"] = std::to_string(result_.steps);
   file.metadata["training.seed"] = std::to_string(options_.seed);
-  file.metadata["training.best"] = std::to_string(result_.best.intersection);
   write_safetensors(options_.folder / checkpoint_name, file);
 }
 
@@ -292,24 +285,10 @@ bool SurfaceTrainer::load_checkpoint() {
   std::map<std::string, std::string> wanted;
   note_surface_shape(options_.shape, wanted);
   wanted["training.seed"] = std::to_string(options_.seed);
-  for (const auto& [key, value] : wanted) {
-    const auto found = file.metadata.find(key);
-    if (found == file.metadata.end() || found->second != value)
-      throw InputError("The checkpoint in " + options_.folder.string() + " was made with another " + key + ".");
-  }
-  for (TrainedTensor& tensor : tensors_) {
-    load_tensor(file, "value." + tensor.name, tensor.value);
-    load_tensor(file, "mean." + tensor.name, tensor.mean);
-    load_tensor(file, "square." + tensor.name, tensor.square);
-    load_tensor(file, "average." + tensor.name, tensor.average);
-  }
-  try {
-    result_.samples = std::stoull(file.metadata.at("training.samples"));
-    result_.steps = std::stoull(file.metadata.at("training.steps"));
-    result_.best.intersection = std::stod(file.metadata.at("training.best"));
-  } catch (const std::logic_error&) {
-    throw InputError("The checkpoint in " + options_.folder.string() + " does not say how far it came.");
-  }
+  const TrainingProgress progress = load_progress(file, wanted, options_.folder, tensors_);
+  result_.samples = progress.samples;
+  result_.steps = progress.steps;
+  result_.best.intersection = progress.best;
   log("going on from " + std::to_string(result_.samples) + " samples");
   return true;
 }

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh/adjacency.hpp"
 
+#include "mesh/disjoint_sets.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "rhizodont/error.hpp"
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 
 namespace rhizodont {
 namespace {
@@ -54,23 +54,6 @@ BorderWalk border_walk(const TriangleMesh& mesh) {
     if (out[v] > 1 || in[v] > 1 || out[v] != in[v]) walk.branching.push_back(static_cast<std::int64_t>(v));
   return walk;
 }
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int x) {
-    while (parent_[static_cast<std::size_t>(x)] != x) {
-      int& up = parent_[static_cast<std::size_t>(x)];
-      up = parent_[static_cast<std::size_t>(up)];
-      x = up;
-    }
-    return x;
-  }
-  void join(int a, int b) { parent_[static_cast<std::size_t>(find(a))] = find(b); }
-
- private:
-  std::vector<int> parent_;
-};
 
 }  // namespace
 

@@ -7,6 +7,7 @@
 #include "operators/surface_operators.hpp"
 
 #include "mesh/adjacency.hpp"
+#include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "operators/intrinsic_triangulation.hpp"
@@ -16,39 +17,28 @@
 #include <Eigen/SparseCholesky>
 
 #include <numbers>
-#include <numeric>
 
 namespace rhizodont {
 namespace {
-
-int find_set(std::vector<int>& parent, int v) {
-  while (parent[static_cast<std::size_t>(v)] != v) {
-    int& up = parent[static_cast<std::size_t>(v)];
-    up = parent[static_cast<std::size_t>(up)];
-    v = up;
-  }
-  return v;
-}
 
 void require_one_piece(const TriangleMesh& mesh) {
   if (mesh.triangles.empty()) throw InputError("The mesh has no triangles.");
   require_valid_indices(mesh);
   require_finite(mesh.vertices);
-  std::vector<int> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets sets(mesh.vertices.size());
   std::vector<bool> used(mesh.vertices.size(), false);
   for (const Triangle& t : mesh.triangles) {
     for (std::size_t i = 0; i < 3; ++i) {
       used[static_cast<std::size_t>(t[i])] = true;
-      parent[static_cast<std::size_t>(find_set(parent, t[i]))] = find_set(parent, t[(i + 1) % 3]);
+      sets.join(t[i], t[(i + 1) % 3]);
     }
   }
   std::vector<std::int64_t> isolated, apart;
-  const int first = find_set(parent, mesh.triangles[0][0]);
+  const int first = sets.find(mesh.triangles[0][0]);
   for (std::size_t v = 0; v < used.size(); ++v) {
     if (!used[v])
       isolated.push_back(static_cast<std::int64_t>(v));
-    else if (find_set(parent, static_cast<int>(v)) != first)
+    else if (sets.find(static_cast<int>(v)) != first)
       apart.push_back(static_cast<std::int64_t>(v));
   }
   if (!isolated.empty()) throw InputError("The mesh has vertices that no triangle uses.", isolated);

@@ -7,6 +7,7 @@
 #include "skirt/skirt_border.hpp"
 
 #include "mesh/adjacency.hpp"
+#include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 #include "skirt/minimum_cut.hpp"
@@ -15,7 +16,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 namespace rhizodont {
@@ -95,25 +95,16 @@ std::vector<bool> triangles_of(const TriangleMesh& mesh, const std::vector<bool>
 
 /// Vertices joined by edges that are on one side: the number of each one's piece, and how many there are.
 std::pair<std::vector<int>, int> pieces_of_vertices(const TriangleMesh& mesh, const std::vector<bool>& is_tooth) {
-  std::vector<int> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&](int v) {
-    while (parent[static_cast<std::size_t>(v)] != v) {
-      int& up = parent[static_cast<std::size_t>(v)];
-      v = up = parent[static_cast<std::size_t>(up)];
-    }
-    return v;
-  };
+  DisjointSets sets(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles)
     for (std::size_t i = 0; i < 3; ++i) {
       const int a = t[i], b = t[(i + 1) % 3];
-      if (is_tooth[static_cast<std::size_t>(a)] == is_tooth[static_cast<std::size_t>(b)])
-        parent[static_cast<std::size_t>(find(a))] = find(b);
+      if (is_tooth[static_cast<std::size_t>(a)] == is_tooth[static_cast<std::size_t>(b)]) sets.join(a, b);
     }
   std::vector<int> piece(mesh.vertices.size()), number(mesh.vertices.size(), -1);
   int count = 0;
   for (std::size_t v = 0; v < piece.size(); ++v) {
-    int& id = number[static_cast<std::size_t>(find(static_cast<int>(v)))];
+    int& id = number[static_cast<std::size_t>(sets.find(static_cast<int>(v)))];
     if (id < 0) id = count++;
     piece[v] = id;
   }

@@ -7,6 +7,7 @@
 #include "skirt/skirt_features.hpp"
 
 #include "mesh/adjacency.hpp"
+#include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
 #include "operators/eigenbasis.hpp"
 #include "operators/geodesic.hpp"
@@ -19,7 +20,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 
 namespace rhizodont {
 namespace {
@@ -34,15 +34,7 @@ struct Border {
 
 Border border_of(const TriangleMesh& mesh) {
   const EdgeTable edges = edge_table(mesh);
-  std::vector<int> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto find = [&](int v) {
-    while (parent[static_cast<std::size_t>(v)] != v) {
-      int& up = parent[static_cast<std::size_t>(v)];
-      v = up = parent[static_cast<std::size_t>(up)];
-    }
-    return v;
-  };
+  DisjointSets sets(mesh.vertices.size());
   std::vector<bool> at_border(mesh.vertices.size(), false);
   std::map<int, double> length;
   for (int pass = 0; pass < 2; ++pass) {
@@ -51,9 +43,9 @@ Border border_of(const TriangleMesh& mesh) {
       const auto [a, b] = edges.vertices[e];
       if (pass == 0) {
         at_border[static_cast<std::size_t>(a)] = at_border[static_cast<std::size_t>(b)] = true;
-        parent[static_cast<std::size_t>(find(a))] = find(b);
+        sets.join(a, b);
       } else {
-        length[find(a)] +=
+        length[sets.find(a)] +=
             (mesh.vertices[static_cast<std::size_t>(a)] - mesh.vertices[static_cast<std::size_t>(b)]).norm();
       }
     }
@@ -66,7 +58,7 @@ Border border_of(const TriangleMesh& mesh) {
   for (int v = 0; v < static_cast<int>(at_border.size()); ++v) {
     if (!at_border[static_cast<std::size_t>(v)]) continue;
     border.all.push_back(v);
-    if (find(v) == longest) border.outer.push_back(v);
+    if (sets.find(v) == longest) border.outer.push_back(v);
   }
   return border;
 }

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "learning/checkpoint.hpp"
+
+#include <stdexcept>
+
+#include "learning/weights.hpp"
+#include "rhizodont/error.hpp"
+
+namespace rhizodont {
+
+void store_progress(const std::vector<TrainedTensor>& tensors, const TrainingProgress& progress, TensorFile& file) {
+  for (const TrainedTensor& tensor : tensors) {
+    file.tensors["value." + tensor.name] = store_tensor(tensor.value, TensorType::float32);
+    file.tensors["mean." + tensor.name] = store_tensor(tensor.mean, TensorType::float32);
+    file.tensors["square." + tensor.name] = store_tensor(tensor.square, TensorType::float32);
+    file.tensors["average." + tensor.name] = store_tensor(tensor.average, TensorType::float32);
+  }
+  file.metadata["training.samples"] = std::to_string(progress.samples);
+  file.metadata["training.steps"] = std::to_string(progress.steps);
+  file.metadata["training.best"] = std::to_string(progress.best);
+}
+
+TrainingProgress load_progress(const TensorFile& file, const std::map<std::string, std::string>& wanted,
+                               const std::filesystem::path& folder, std::vector<TrainedTensor>& tensors) {
+  for (const auto& [key, value] : wanted) {
+    const auto found = file.metadata.find(key);
+    if (found == file.metadata.end() || found->second != value)
+      throw InputError("The checkpoint in " + folder.string() + " was made with another " + key + ".");
+  }
+  for (TrainedTensor& tensor : tensors) {
+    load_tensor(file, "value." + tensor.name, tensor.value);
+    load_tensor(file, "mean." + tensor.name, tensor.mean);
+    load_tensor(file, "square." + tensor.name, tensor.square);
+    load_tensor(file, "average." + tensor.name, tensor.average);
+  }
+  try {
+    return {std::stoull(file.metadata.at("training.samples")), std::stoull(file.metadata.at("training.steps")),
+            std::stod(file.metadata.at("training.best"))};
+  } catch (const std::logic_error&) {
+    throw InputError("The checkpoint in " + folder.string() + " does not say how far it came.");
+  }
+}
+
+}  // namespace rhizodont

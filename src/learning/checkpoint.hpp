@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Private to this room: brings in torch.
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "learning/optimiser.hpp"
+#include "learning/safetensors.hpp"
+
+namespace rhizodont {
+
+/// How far a training run has come.
+struct TrainingProgress {
+  std::uint64_t samples = 0, steps = 0;
+  double best = 0;  ///< figure on held-out samples by which weights are kept
+};
+
+/// Notes parameters, the optimiser's state and the progress of a run in a checkpoint.
+void store_progress(const std::vector<TrainedTensor>& tensors, const TrainingProgress& progress, TensorFile& file);
+
+/// Reads these back. `wanted`: metadata that the run must have been made with. `folder`: of the run, for messages.
+/// Throws InputError for a checkpoint of another run, without a tensor or without its progress.
+TrainingProgress load_progress(const TensorFile& file, const std::map<std::string, std::string>& wanted,
+                               const std::filesystem::path& folder, std::vector<TrainedTensor>& tensors);
+
+}  // namespace rhizodont
