@@ -117,13 +117,14 @@ void add_matched_seeds(const float* matched, const TrainingOptions& options, std
                        std::int64_t* seed_patches, float* patches) {
   const int each = options.shape.patch_points;
   std::uniform_int_distribution<int> patch(0, options.shape.queries - 1);
-  std::normal_distribution<float> jitter(0, static_cast<float>(options.denoise_jitter));
+  std::normal_distribution<float> normal;
+  const auto jitter = static_cast<float>(options.denoise_jitter);
   for (int s = 0; s < options.denoise_queries; ++s, seeds += 3, patches += 3 * each) {
     *seed_patches = patch(random);
     const float* points = matched + 3 * each * *seed_patches++;
     std::copy_n(points, 3 * each, patches);
     for (int axis = 0; axis < 3; ++axis) {
-      seeds[axis] = jitter(random);
+      seeds[axis] = jitter * normal(random);
       for (int i = 0; i < each; ++i) seeds[axis] += points[3 * i + axis] / static_cast<float>(each);
     }
   }
@@ -135,9 +136,9 @@ void add_seeds(const std::vector<float>& target, const TrainingOptions& options,
   // Target points come in random order, so the first ones are spread like all of them.
   const auto count = static_cast<std::size_t>(options.denoise_queries);
   const std::span<const float> centres{target.data(), 3 * count};
-  std::normal_distribution<float> jitter(0, static_cast<float>(options.denoise_jitter));
-  const auto widest = static_cast<float>(5 * options.denoise_jitter);
-  for (std::size_t i = 0; i < 3 * count; ++i) seeds[i] = centres[i] + std::clamp(jitter(random), -widest, widest);
+  std::normal_distribution<float> normal;
+  const auto jitter = static_cast<float>(options.denoise_jitter);
+  for (std::size_t i = 0; i < 3 * count; ++i) seeds[i] = centres[i] + jitter * std::clamp(normal(random), -5.F, 5.F);
   for (const std::int32_t i : nearest_keys(centres, target, options.shape.patch_points))
     patches = std::copy_n(target.data() + 3 * static_cast<std::size_t>(i), 3, patches);
 }

@@ -220,14 +220,15 @@ std::vector<CompletedTooth> complete_candidates(const TriangleMesh& crown, const
   if (count < 1 || count > 9) throw UsageError("There can be 1 to 9 candidates.");
   std::vector<CompletedTooth> candidates{complete_tooth(crown, models, options, progress)};
   if (count == 1) return candidates;
-  const CompletionRecord& expected = candidates.front().record;
-  if (!expected.root_interval)
+  if (!candidates.front().record.root_interval)
     throw UsageError(options.steering.any() ? "Candidates differ in what steering sets: ask for one of the two."
                                             : "Candidates need a completion network that was calibrated.");
-  const RootInterval interval = *expected.root_interval;
+  // Copies: the vector moves its teeth when it grows.
+  const RootInterval interval = *candidates.front().record.root_interval;
+  const int fdi = candidates.front().record.fdi;
   for (int i = 0; i + 1 < count; ++i) {
     CompleteOptions of_this = options;
-    of_this.fdi = expected.fdi;
+    of_this.fdi = fdi;
     const double share = count == 2 ? 0 : static_cast<double>(i) / (count - 2);
     of_this.steering.length_mm = std::lerp(interval.length_low_mm, interval.length_high_mm, share);
     candidates.push_back(complete_tooth(crown, models, of_this, progress));
