@@ -31,11 +31,12 @@ report = json.load(sys.stdin)
 print(report["crown"]["kept_triangles"], report["crown"]["triangles"], int(report["promise_3_holds"]))')"
       if "$program" check "$crown" "$tooth" > /dev/null; then
         done_here=$((done_here + 1)) kept=$((kept + k)) triangles=$((triangles + n)) good=$((good + p))
-        # Vertices dropped as skirt, of those that no cap had.
+        # Vertices dropped as skirt or spike, of those that no cap had.
         read -r s o share <<< "$(/usr/bin/python3 -c '
 import json, sys
 crown = json.load(open(sys.argv[1]))["crown"]
-skirt = len(crown["dropped_vertices_by_reason"].get("skirt", []))
+dropped = crown["dropped_vertices_by_reason"]
+skirt = sum(len(dropped.get(reason, [])) for reason in ("skirt", "spike"))
 opened = skirt + len(crown["kept_vertices"])
 print(skirt, opened, round(10000 * skirt / opened))' "${tooth%.ply}.json")"
         skirt=$((skirt + s)) opened=$((opened + o)) most=$((share > most ? share : most))
@@ -49,7 +50,7 @@ print(skirt, opened, round(10000 * skirt / opened))' "${tooth%.ply}.json")"
       [ -e "$tooth" ] && echo "$tooth was written all the same" && bad=1
     fi
   done
-  echo "$group: $done_here of $all completed, promise 3 kept on $good, $kept of $triangles triangles kept, $skirt of $opened vertices beside caps dropped as skirt," \
+  echo "$group: $done_here of $all completed, promise 3 kept on $good, $kept of $triangles triangles kept, $skirt of $opened vertices beside caps dropped as skirt or spike," \
     "$((most / 100)).$(printf %02d $((most % 100))) % of the worst crown"
 done
 exit $bad

@@ -43,7 +43,7 @@ struct CompleteOptions {
 /// A vertex of the input that the tooth does not have, and why.
 struct DroppedCrownVertex {
   int vertex = 0;      ///< index in the input
-  std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt", or the action of a repair
+  std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt", "spike", or the action of a repair
 };
 
 /// Where the truth lies with 80 % probability, as found on generated teeth that the network was not trained on.

@@ -9,6 +9,7 @@
 #include "rhizodont/error.hpp"
 #include "skirt/skirt_border.hpp"
 #include "skirt/skirt_network.hpp"
+#include "skirt/spikes.hpp"
 
 #include <algorithm>
 
@@ -41,17 +42,9 @@ KeptCrown open_crown(const TriangleMesh& crown, bool closed, const Atlas& atlas,
   return keep_crown(crown, keep, closed ? "cap" : "skirt");
 }
 
-/// Takes off what the network judges to be skirt.
-void drop_skirt(const TriangleMesh& crown, KeptCrown& kept, const SurfaceNetwork& network, double threshold,
-                CompletionRecord& record) {
-  const std::vector<float> confidence = skirt_confidence(kept.mesh, network);
-  record.skirt_model = network.metadata();
-  record.tooth_confidence.assign(crown.vertices.size(), -1);
-  for (std::size_t v = 0; v < confidence.size(); ++v)
-    record.tooth_confidence[static_cast<std::size_t>(kept.old_vertices[v])] = confidence[v];
-  SkirtBorderOptions border;
-  border.threshold = threshold;
-  KeptCrown rest = keep_crown(kept.mesh, tooth_triangles(kept.mesh, confidence, border), "skirt");
+/// Reduces what is kept further, to the triangles of kept.mesh with a true entry in `keep`.
+void keep_only(KeptCrown& kept, const std::vector<bool>& keep, const std::string& reason) {
+  KeptCrown rest = keep_crown(kept.mesh, keep, reason);
   for (DroppedVertex& d : rest.dropped)
     kept.dropped.push_back({kept.old_vertices[static_cast<std::size_t>(d.vertex)], std::move(d.reason)});
   std::sort(kept.dropped.begin(), kept.dropped.end(),
@@ -61,6 +54,20 @@ void drop_skirt(const TriangleMesh& crown, KeptCrown& kept, const SurfaceNetwork
   kept.mesh = std::move(rest.mesh);
   kept.old_vertices = std::move(rest.old_vertices);
   kept.old_triangles = std::move(rest.old_triangles);
+}
+
+/// Takes off what the network judges to be skirt, and the spikes on what is left.
+void drop_skirt(const TriangleMesh& crown, KeptCrown& kept, const SurfaceNetwork& network, double threshold,
+                CompletionRecord& record) {
+  const std::vector<float> confidence = skirt_confidence(kept.mesh, network);
+  record.skirt_model = network.metadata();
+  record.tooth_confidence.assign(crown.vertices.size(), -1);
+  for (std::size_t v = 0; v < confidence.size(); ++v)
+    record.tooth_confidence[static_cast<std::size_t>(kept.old_vertices[v])] = confidence[v];
+  SkirtBorderOptions border;
+  border.threshold = threshold;
+  keep_only(kept, tooth_triangles(kept.mesh, confidence, border), "skirt");
+  keep_only(kept, triangles_without_spikes(kept.mesh), "spike");
 }
 
 KeptCrown usable_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,

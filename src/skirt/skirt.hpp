@@ -12,7 +12,7 @@ namespace rhizodont {
 /// A vertex of the input that the tooth will not have.
 struct DroppedVertex {
   int vertex = 0;      ///< index in the input
-  std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt"
+  std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt", "spike"
 };
 
 /// What is left of a crown, with where each element stood before. Order is kept.

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", section 3.2 and figure 2: spikes are
+//   part of what is dropped as skirt. The sum of a vertex's corners is 2 pi less its Gauss curvature, which needs no
+//   normals: those of a folded flap say nothing.
+#include "skirt/spikes.hpp"
+
+#include "mesh/adjacency.hpp"
+#include "mesh/geometry.hpp"
+#include "rhizodont/error.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace rhizodont {
+namespace {
+
+/// Vertices of the mesh that are tips.
+std::vector<bool> tips(const TriangleMesh& mesh, const SpikeOptions& options) {
+  std::vector<double> sum(mesh.vertices.size(), 0), least(mesh.vertices.size(), options.tip);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto angles = triangle_angles(mesh, t);
+    for (std::size_t i = 0; i < 3; ++i) sum[static_cast<std::size_t>(mesh.triangles[t][i])] += angles[i];
+  }
+  const EdgeTable table = edge_table(mesh);
+  for (std::size_t e = 0; e < table.size(); ++e)
+    if (table.triangle_count(e) == 1)
+      for (const int v : table.vertices[e]) least[static_cast<std::size_t>(v)] = options.flap;
+  std::vector<bool> tip;
+  for (std::size_t v = 0; v < sum.size(); ++v) tip.push_back(sum[v] * 180 / std::numbers::pi < least[v]);
+  return tip;
+}
+
+}  // namespace
+
+std::vector<bool> triangles_without_spikes(const TriangleMesh& crown, const SpikeOptions& options) {
+  if (!(options.tip >= 0 && options.tip <= 360) || !(options.flap >= 0 && options.flap <= 180) || options.rounds < 1)
+    throw UsageError(
+        "The tip of a spike has 0 to 360 degrees, that of a flap 0 to 180, and there is at least one round.");
+  std::vector<bool> keep(crown.triangles.size(), true);
+  for (int round = 0; round < options.rounds; ++round) {
+    const Submesh part = submesh(crown, keep);
+    const std::vector<bool> tip = tips(part.mesh, options);
+    if (std::none_of(tip.begin(), tip.end(), [](bool is_tip) { return is_tip; })) break;
+    for (std::size_t t = 0; t < part.mesh.triangles.size(); ++t)
+      for (const int v : part.mesh.triangles[t])
+        if (tip[static_cast<std::size_t>(v)]) keep[static_cast<std::size_t>(part.old_triangles[t])] = false;
+  }
+  return keep;
+}
+
+}  // namespace rhizodont
