@@ -104,7 +104,7 @@ struct ToothVariation {
   double crown_height = 0.07;          ///< height of the crown on its own, relative
   double root_length_mm = 1.5;         ///< root length beside what goes with size, millimetres
   double root_size_correlation = 0.5;  ///< exponent with which the root's length follows the crown's size, 0..1
-  double trunk = 0.22;                 ///< length of the root trunk, relative
+  double trunk = 0.25;                 ///< length of the root trunk, relative
   double warp_mm = 0.27;               ///< smooth displacement of the surface of a tooth 8 mm wide, waves of 7 to 20 mm
   double root_thickness = 0.09;        ///< the root's cross-section along x and y each, relative
   double taper = 0.15;                 ///< change of the cross-section from neck to apex, relative
