@@ -5,6 +5,7 @@
 // Geometry and Meshing Topology", 3.3.
 #include "atlas/crown_crop.hpp"
 
+#include "mesh/principal_axis.hpp"
 #include "rhizodont/error.hpp"
 
 #include <algorithm>
@@ -132,6 +133,16 @@ bool is_disc(const TriangleMesh& mesh) {
          1;
 }
 
+// Slope of a cut across the tooth's own long axis (crown and root, the growth axis of the paper), in the tooth's frame,
+// whose z is across the cemento-enamel junction. Very short roots leave the crown's width as the longest extent: no
+// slope.
+Eigen::Vector2d slope_across_long_axis(const SyntheticTooth& tooth) {
+  constexpr double steepest = 0.36;  // tan 20 degrees
+  const Eigen::Vector3d axis = principal_axis(tooth.mesh.vertices);
+  const Eigen::Vector2d slope = -axis.head<2>() / axis.z();
+  return slope.norm() < steepest ? slope : Eigen::Vector2d::Zero();
+}
+
 }  // namespace
 
 double GumLine::height(const JunctionHeight& junction, double x, double y) const {
@@ -154,22 +165,23 @@ GumLine draw_gum_line(const SyntheticTooth& tooth, double paper_share, double ga
     line.wave_mm[k] = random.normal(0.0, 0.22 / static_cast<double>(k + 1));
     line.wave_phase[k] = random.uniform(0, 2 * std::numbers::pi);
   }
-  double tilt = 4.5 * degree;
+  double tilt = 2.5 * degree;
+  Eigen::Vector2d level = Eigen::Vector2d::Zero();
   if (kind < paper_share) {
     const double length = tooth.crown_height + tooth.root_length;
     line.junction_share = random.uniform(0.0, 0.3);
     line.offset_mm = tooth.crown_height - length * random.uniform(1.0 / 8, 1.0 / 2);
-  } else if (kind < paper_share + 0.35 * (1 - paper_share)) {
-    // A trimmed model: nearly flat, and across the arch's axis, against which teeth lean.
+    level = slope_across_long_axis(tooth);
+  } else if (kind < paper_share + 0.35 * (1 - paper_share)) {  // a crown trimmed from a whole tooth: nearly flat
     line.junction_share = random.uniform(0.0, 0.35);
     line.offset_mm = random.uniform(-0.8, 2.2);
-    tilt = 9 * degree;
+    level = slope_across_long_axis(tooth);
   } else {  // the gum's own line: flatter than the junction, with papillae between the teeth
     line.junction_share = random.uniform(0.4, 1.15);
     line.offset_mm = random.chance(0.75) ? random.uniform(-0.6, 1.6) : random.uniform(-1.0, 3.0);
     tilt = 5.5 * degree;
   }
-  line.slope = {std::tan(random.normal(0.0, tilt)), std::tan(random.normal(0.0, tilt))};
+  line.slope = level + Eigen::Vector2d(std::tan(random.normal(0.0, tilt)), std::tan(random.normal(0.0, tilt)));
   if (random.chance(gap_probability)) {
     for (std::size_t side = 0; side < 2; ++side) {
       line.gap_mm[side] = random.chance(0.7) ? random.uniform(0.0, 2.2) : 0.0;

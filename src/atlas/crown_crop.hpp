@@ -24,8 +24,9 @@ struct GumLine {
   double height(const JunctionHeight& junction, double x, double y) const;
 };
 
-/// How scans end: 85 in 100 near the junction, with waves, papillae and tilt; the rest at 1/2 to 1/8 of the tooth's
-/// length (paper, 3.3). `paper_share` is that rest, `gap_probability` the share with notches at the contacts.
+/// How scans end: 85 in 100 near the junction, with waves, papillae and tilt, a third of them across the tooth's long
+/// axis like crowns trimmed from whole teeth; the rest across that axis at 1/2 to 1/8 of the tooth's length
+/// (paper, 3.3). `paper_share` is that rest, `gap_probability` the share with notches at the contacts.
 GumLine draw_gum_line(const SyntheticTooth& tooth, double paper_share, double gap_probability, RandomStream& random);
 
 /// The part of the tooth above the gum line, cut through the triangles; the piece that holds the highest vertex.

@@ -9,6 +9,7 @@
 
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
+#include "mesh/principal_axis.hpp"
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
 
@@ -28,15 +29,6 @@ namespace rhizodont {
 namespace {
 
 constexpr double apex_persistence_mm = 1.2;  // shorter bumps on a root's tip are not roots
-
-Eigen::Vector3d principal_axis(const std::vector<Point>& points) {
-  Point mean = Point::Zero();
-  for (const Point& p : points) mean += p;
-  mean /= static_cast<double>(points.size());
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Point& p : points) covariance += (p - mean) * (p - mean).transpose();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(2);
-}
 
 // An unlabelled template: its long axis, the wider end up, and the crown's usual share of the length.
 std::vector<std::uint8_t> estimated_crown(const TriangleMesh& mesh, double crown_share) {

@@ -10,13 +10,13 @@
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
+#include "mesh/principal_axis.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -44,18 +44,10 @@ double spread(const std::vector<Point>& points) {
   return sum / static_cast<double>(points.size());
 }
 
-/// Direction of the largest extent, either way.
-Eigen::Vector3d long_axis(const std::vector<Point>& points) {
-  const Point mean = mean_of(points);
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Point& p : points) covariance += (p - mean) * (p - mean).transpose();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvectors().col(2);
-}
-
 /// The long axis with its wider end up.
 Eigen::Vector3d axis_to_wider_end(const std::vector<Point>& points) {
   const Point mean = mean_of(points);
-  const Eigen::Vector3d axis = long_axis(points);
+  const Eigen::Vector3d axis = principal_axis(points);
   // The third moment of width: positive where what lies above the middle is the wider part.
   double lean = 0;
   for (const Point& p : points) {
@@ -200,7 +192,7 @@ TemplateTooth load_template_tooth(const std::filesystem::path& folder, int fdi) 
     tooth.mesh = mirrored(tooth.mesh);
     tooth.crown = mirrored(tooth.crown);
   }
-  const Eigen::Vector3d axis = long_axis(tooth.mesh.vertices);
+  const Eigen::Vector3d axis = principal_axis(tooth.mesh.vertices);
   tooth.axis = axis.dot(crown_growth_axis(tooth.crown)) > 0 ? axis : Eigen::Vector3d(-axis);
   return tooth;
 }

@@ -10,7 +10,9 @@
 #include "rhizodont/error.hpp"
 
 #include <gtest/gtest.h>
+#include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -137,6 +139,24 @@ TEST(CrownCrop, nothingAboveTheLineIsNoCrown) {
   EXPECT_FALSE(crop_crown(ball(5), line));
   line.offset_mm = -6;  // the whole ball: no border
   EXPECT_FALSE(crop_crown(ball(5), line));
+}
+
+TEST(GumLine, cropsOfThePaperLieAcrossTheLongAxis) {
+  SyntheticTooth tooth = ball(5);
+  const Eigen::Matrix3d lean =
+      Eigen::AngleAxisd(12 * std::numbers::pi / 180, Eigen::Vector3d(1, 2, 0).normalized()).toRotationMatrix();
+  for (Point& p : tooth.mesh.vertices) p = lean * Point(p.x(), p.y(), 2.2 * p.z());
+  tooth.crown_height = tooth.root_length = 11;
+  const Eigen::Vector3d axis = lean.col(2);
+  double mean = 0;
+  constexpr int draws = 40;
+  for (std::uint64_t seed = 0; seed < draws; ++seed) {
+    RandomStream random(seed);
+    const TriangleMesh crown = draw_cropped_crown(tooth, 1, 0, random).mesh;
+    mean += std::acos(std::min(1.0, area_vector(crown).normalized().dot(axis))) / draws;
+  }
+  EXPECT_LT(mean * 180 / std::numbers::pi, 4.5)
+      << "tilt of 2.5 degrees along x and y, and waves; the lean itself is 12";
 }
 
 TEST(GumLine, notchesAreAtTheContacts) {
