@@ -9,6 +9,7 @@
 #include "atlas/scanner_mesh.hpp"
 #include "evaluation/root_figures.hpp"
 #include "evaluation/template_predictor.hpp"
+#include "mesh/principal_axis.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 
@@ -33,7 +34,7 @@ using namespace rhizodont;
 struct Scan {
   ToothVariation variation;
   GumLine line;
-  double shown_share = 0;  // of the tooth's length, above a level cut; 0: down to the gum line
+  double shown_share = 0;  // of the tooth's length, above a cut across its long axis; 0: down to the gum line
   double noise_mm = 0.005;
 };
 
@@ -82,6 +83,8 @@ std::optional<TriangleMesh> scanned(const SyntheticTooth& tooth, Scan scan, std:
     scan.line = GumLine{};
     scan.line.junction_share = 0;
     scan.line.offset_mm = tooth.crown_height - scan.shown_share * (tooth.crown_height + tooth.root_length);
+    const Eigen::Vector3d axis = principal_axis(tooth.mesh.vertices);
+    scan.line.slope = -axis.head<2>() / axis.z();
   }
   const auto crown = crop_crown(tooth, scan.line);
   if (!crown) return std::nullopt;  // cut among cusps, or below the furcation

@@ -11,51 +11,22 @@
 #include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/self_intersection.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "rhizodont/error.hpp"
 
 #include <CGAL/Polygon_mesh_processing/border.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 
 #include <array>
 
 namespace rhizodont {
-namespace {
-
-using Surface = CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3>;
-
-Surface to_surface(const TriangleMesh& mesh) {
-  Surface surface;
-  for (const Point& p : mesh.vertices) surface.add_vertex({p.x(), p.y(), p.z()});
-  const auto vertex = [](int v) { return Surface::Vertex_index(static_cast<std::uint32_t>(v)); };
-  for (const Triangle& t : mesh.triangles) surface.add_face(vertex(t[0]), vertex(t[1]), vertex(t[2]));
-  return surface;
-}
-
-TriangleMesh from_surface(const Surface& surface) {
-  TriangleMesh mesh;
-  for (const auto v : surface.vertices())
-    mesh.vertices.emplace_back(surface.point(v).x(), surface.point(v).y(), surface.point(v).z());
-  for (const auto f : surface.faces()) {
-    Triangle t{};
-    std::size_t i = 0;
-    for (const auto v : surface.vertices_around_face(surface.halfedge(f)))
-      t[i++] = static_cast<std::int32_t>(static_cast<std::uint32_t>(v));
-    mesh.triangles.push_back(t);
-  }
-  return mesh;
-}
-
-}  // namespace
 
 TriangleMesh remeshed(const TriangleMesh& mesh, double edge_mm) {
   namespace PMP = CGAL::Polygon_mesh_processing;
-  Surface surface = to_surface(mesh);
+  SurfaceMesh surface = to_surface_mesh(mesh);
   PMP::isotropic_remeshing(surface.faces(), edge_mm, surface,
                            PMP::parameters::number_of_iterations(2).number_of_relaxation_steps(1));
-  surface.collect_garbage();
-  return from_surface(surface);
+  return from_surface_mesh(surface);
 }
 
 TriangleMesh scanner_mesh(const TriangleMesh& crown, double edge_mm, double noise_mm, std::uint64_t seed) {

@@ -5,7 +5,7 @@
 
 #include "fusion/fill_holes.hpp"
 
-#include "fusion/surface_mesh.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "rhizodont/error.hpp"
 
 #include <CGAL/Polygon_mesh_processing/border.h>

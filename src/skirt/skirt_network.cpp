@@ -7,11 +7,10 @@
 #include "mesh/adjacency.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/diagnosis.hpp"
+#include "mesh/surface_mesh.hpp"
 #include "rhizodont/error.hpp"
 #include "skirt/skirt_features.hpp"
 
-#include <CGAL/Simple_cartesian.h>
-#include <CGAL/Surface_mesh.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_stop_predicate.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Edge_length_cost.h>
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Midpoint_placement.h>
@@ -21,31 +20,6 @@
 
 namespace rhizodont {
 namespace {
-
-using Surface = CGAL::Surface_mesh<CGAL::Simple_cartesian<double>::Point_3>;
-
-Surface to_surface(const TriangleMesh& mesh) {
-  Surface surface;
-  for (const Point& p : mesh.vertices) surface.add_vertex({p.x(), p.y(), p.z()});
-  const auto vertex = [](int v) { return Surface::Vertex_index(static_cast<std::uint32_t>(v)); };
-  for (const Triangle& t : mesh.triangles) surface.add_face(vertex(t[0]), vertex(t[1]), vertex(t[2]));
-  return surface;
-}
-
-TriangleMesh from_surface(Surface& surface) {
-  surface.collect_garbage();
-  TriangleMesh mesh;
-  for (const auto v : surface.vertices())
-    mesh.vertices.emplace_back(surface.point(v).x(), surface.point(v).y(), surface.point(v).z());
-  for (const auto f : surface.faces()) {
-    Triangle t{};
-    std::size_t i = 0;
-    for (const auto v : surface.vertices_around_face(surface.halfedge(f)))
-      t[i++] = static_cast<std::int32_t>(static_cast<std::uint32_t>(v));
-    mesh.triangles.push_back(t);
-  }
-  return compact(mesh).mesh;
-}
 
 /// Values of a mesh's vertices at other points, by the nearest place of its surface.
 std::vector<float> carried(const TriangleMesh& from, const std::vector<float>& values, const TriangleMesh& to) {
@@ -71,13 +45,13 @@ std::vector<float> carried(const TriangleMesh& from, const std::vector<float>& v
 TriangleMesh decimated(const TriangleMesh& crown, std::size_t vertices) {
   if (crown.vertices.size() <= vertices || !diagnose(crown).is_oriented_manifold()) return crown;
   namespace SMS = CGAL::Surface_mesh_simplification;
-  Surface surface = to_surface(crown);
+  SurfaceMesh surface = to_surface_mesh(crown);
   const std::size_t edges = surface.number_of_edges() * vertices / crown.vertices.size();
   // Shortest edges first: triangles come out even, as those that the network was trained on.
-  SMS::edge_collapse(
-      surface, SMS::Count_stop_predicate<Surface>(edges),
-      CGAL::parameters::get_cost(SMS::Edge_length_cost<Surface>()).get_placement(SMS::Midpoint_placement<Surface>()));
-  return from_surface(surface);
+  SMS::edge_collapse(surface, SMS::Count_stop_predicate<SurfaceMesh>(edges),
+                     CGAL::parameters::get_cost(SMS::Edge_length_cost<SurfaceMesh>())
+                         .get_placement(SMS::Midpoint_placement<SurfaceMesh>()));
+  return compact(from_surface_mesh(surface)).mesh;
 }
 
 std::vector<float> skirt_confidence(const TriangleMesh& crown, const SurfaceNetwork& network,

@@ -24,12 +24,12 @@ inline SurfaceMesh to_surface_mesh(const TriangleMesh& mesh) {
     const auto face = surface.add_face(Vertex(static_cast<unsigned>(a)), Vertex(static_cast<unsigned>(b)),
                                        Vertex(static_cast<unsigned>(c)));
     if (face == SurfaceMesh::null_face())
-      throw NoResultError("The joined tooth is not a manifold at one of its triangles.",
-                          {static_cast<std::int64_t>(t)});
+      throw NoResultError("The surface is not a manifold at one of its triangles.", {static_cast<std::int64_t>(t)});
   }
   return surface;
 }
 
+/// The three vertices of a face.
 inline Triangle to_triangle(const SurfaceMesh& surface, SurfaceMesh::Face_index face) {
   const auto h = surface.halfedge(face);
   return {static_cast<std::int32_t>(surface.source(h)), static_cast<std::int32_t>(surface.target(h)),
@@ -37,5 +37,14 @@ inline Triangle to_triangle(const SurfaceMesh& surface, SurfaceMesh::Face_index 
 }
 
 inline Point to_point(const SurfaceMesh::Point& p) { return {p.x(), p.y(), p.z()}; }
+
+/// Back from CGAL; elements that were removed are dropped, so that numbers run through.
+inline TriangleMesh from_surface_mesh(SurfaceMesh& surface) {
+  surface.collect_garbage();
+  TriangleMesh mesh;
+  for (const auto v : surface.vertices()) mesh.vertices.push_back(to_point(surface.point(v)));
+  for (const auto f : surface.faces()) mesh.triangles.push_back(to_triangle(surface, f));
+  return mesh;
+}
 
 }  // namespace rhizodont
