@@ -3,8 +3,9 @@
 
 // What a crown cannot tell: how far a predictor is off that knows all of a generated tooth but one thing, and takes the
 // family's mean for that. No predictor can do better on such teeth as far as the crown does not show this thing. The
-// waves of the surface run on into the crown and are left as they are. usage: bench_unseen DATA_FOLDER
-// [TEETH_PER_TYPE=10]
+// waves of the surface run on into the crown and are left as they are.
+//
+// usage: bench_unseen DATA_FOLDER [TEETH_PER_TYPE=10]
 
 #include "atlas/completion_sample.hpp"
 #include "atlas/tooth_family.hpp"
@@ -96,9 +97,8 @@ int main(int argc, char** argv) {
   try {
     const ToothFamilies families = load_tooth_families(argv[1]);
     fmt::print(
-        "| not known | teeth | root length, mm | apex, mm | root Chamfer, mm | axis, degrees | Chamfer L2 x 1000 | F "
-        "at "
-        "1 % |\n|---|---|---|---|---|---|---|---|\n");
+        "| not known | teeth | root length, mm | apex, mm | root Chamfer, mm | axis, degrees | Chamfer L2 x 1000 "
+        "| F at 1 % |\n|---|---|---|---|---|---|---|---|\n");
     for (const Unknown& unknown : unknowns())
       row(families, unknown, argc > 2 ? std::strtoull(argv[2], nullptr, 10) : 10);
     return 0;
