@@ -5,9 +5,9 @@
 
 #include "common/hostile_crowns.hpp"
 
-#include "fusion/surface_mesh.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/surface_mesh.hpp"
 
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Count_ratio_stop_predicate.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
