@@ -9,7 +9,6 @@
 #include "atlas/scanner_mesh.hpp"
 #include "evaluation/root_figures.hpp"
 #include "evaluation/template_predictor.hpp"
-#include "mesh/principal_axis.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 
@@ -83,8 +82,7 @@ std::optional<TriangleMesh> scanned(const SyntheticTooth& tooth, Scan scan, std:
     scan.line = GumLine{};
     scan.line.junction_share = 0;
     scan.line.offset_mm = tooth.crown_height - scan.shown_share * (tooth.crown_height + tooth.root_length);
-    const Eigen::Vector3d axis = principal_axis(tooth.mesh.vertices);
-    scan.line.slope = -axis.head<2>() / axis.z();
+    scan.line.slope = slope_across_long_axis(tooth);
   }
   const auto crown = crop_crown(tooth, scan.line);
   if (!crown) return std::nullopt;  // cut among cusps, or below the furcation

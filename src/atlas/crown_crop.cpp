@@ -133,16 +133,6 @@ bool is_disc(const TriangleMesh& mesh) {
          1;
 }
 
-// Slope of a cut across the tooth's own long axis (crown and root, the growth axis of the paper), in the tooth's frame,
-// whose z is across the cemento-enamel junction. Very short roots leave the crown's width as the longest extent: no
-// slope.
-Eigen::Vector2d slope_across_long_axis(const SyntheticTooth& tooth) {
-  constexpr double steepest = 0.36;  // tan 20 degrees
-  const Eigen::Vector3d axis = principal_axis(tooth.mesh.vertices);
-  const Eigen::Vector2d slope = -axis.head<2>() / axis.z();
-  return slope.norm() < steepest ? slope : Eigen::Vector2d::Zero();
-}
-
 }  // namespace
 
 double GumLine::height(const JunctionHeight& junction, double x, double y) const {
@@ -155,6 +145,13 @@ double GumLine::height(const JunctionHeight& junction, double x, double y) const
     z += gap_mm[side] * std::exp(-0.5 * d * d);
   }
   return z;
+}
+
+Eigen::Vector2d slope_across_long_axis(const SyntheticTooth& tooth) {
+  constexpr double steepest = 0.36;  // tan 20 degrees
+  const Eigen::Vector3d axis = principal_axis(tooth.mesh.vertices);
+  const Eigen::Vector2d slope = -axis.head<2>() / axis.z();
+  return slope.norm() < steepest ? slope : Eigen::Vector2d::Zero();
 }
 
 GumLine draw_gum_line(const SyntheticTooth& tooth, double paper_share, double gap_probability, RandomStream& random) {

@@ -24,6 +24,11 @@ struct GumLine {
   double height(const JunctionHeight& junction, double x, double y) const;
 };
 
+/// Slope (GumLine::slope) of a cut across the tooth's own long axis: that of crown and root, the growth axis of the
+/// paper, where the frame's z is across the cemento-enamel junction. Zero where that is over 20 degrees: very short
+/// roots leave the crown's width as the longest extent.
+Eigen::Vector2d slope_across_long_axis(const SyntheticTooth& tooth);
+
 /// How scans end: 85 in 100 near the junction, with waves, papillae and tilt, a third of them across the tooth's long
 /// axis like crowns trimmed from whole teeth; the rest across that axis at 1/2 to 1/8 of the tooth's length
 /// (paper, 3.3). `paper_share` is that rest, `gap_probability` the share with notches at the contacts.
