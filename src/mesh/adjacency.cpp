@@ -3,10 +3,12 @@
 #include "mesh/adjacency.hpp"
 
 #include "mesh/disjoint_sets.hpp"
+#include "mesh/geometry.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "rhizodont/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 namespace rhizodont {
@@ -107,6 +109,18 @@ VertexTriangles vertex_triangles(const TriangleMesh& mesh) {
     for (const int v : mesh.triangles[t])
       around.triangles[static_cast<std::size_t>(place[static_cast<std::size_t>(v)]++)] = static_cast<int>(t);
   return around;
+}
+
+double edge_bend(const TriangleMesh& mesh, const EdgeTable& table, std::size_t edge) {
+  if (table.triangle_count(edge) != 2) return 0;
+  const auto [a, b] = table.vertices[edge];
+  const Eigen::Vector3d along = mesh.vertices[static_cast<std::size_t>(b)] - mesh.vertices[static_cast<std::size_t>(a)];
+  const auto at = static_cast<std::size_t>(table.first[edge]);
+  const int g = table.half_edges[at], h = table.half_edges[at + 1];
+  const Eigen::Vector3d first = triangle_normal(mesh, static_cast<std::size_t>(half_edge_triangle(g)));
+  const Eigen::Vector3d second = triangle_normal(mesh, static_cast<std::size_t>(half_edge_triangle(h)));
+  const Eigen::Vector3d into_first = (half_edge_from(mesh, g) == a ? 1 : -1) * first.cross(along).normalized();
+  return std::atan2(-second.dot(into_first), second.dot(first));
 }
 
 std::vector<std::vector<int>> border_loops(const TriangleMesh& mesh) {

@@ -51,6 +51,10 @@ struct VertexTriangles {
 /// Throws InputError (ids of the triangles) if an index is out of range.
 VertexTriangles vertex_triangles(const TriangleMesh& mesh);
 
+/// How much the surface is bent at an edge of the table, radians, -pi to pi: positive outwards (a ridge), negative
+/// inwards (a crease), 0 where the edge has not just two triangles.
+double edge_bend(const TriangleMesh& mesh, const EdgeTable& table, std::size_t edge);
+
 /// The closed loops of border vertices; in each, consecutive vertices (and last to first) are a half-edge of the
 /// triangle beside it, so the mesh lies to the left when seen from outside. Each loop starts at its lowest vertex;
 /// loops are sorted by that vertex. Empty for a closed mesh.

@@ -26,19 +26,6 @@ double log_odds(double p) {
   return std::log(p / (1 - p));
 }
 
-/// How much an edge is bent, radians: negative inwards, as in the crease between tooth and gum.
-double edge_bend(const TriangleMesh& mesh, const EdgeTable& table, std::size_t edge) {
-  if (table.triangle_count(edge) != 2) return 0;
-  const auto [a, b] = table.vertices[edge];
-  const Eigen::Vector3d along = mesh.vertices[static_cast<std::size_t>(b)] - mesh.vertices[static_cast<std::size_t>(a)];
-  const auto at = static_cast<std::size_t>(table.first[edge]);
-  const int g = table.half_edges[at], h = table.half_edges[at + 1];
-  const Eigen::Vector3d first = triangle_normal(mesh, static_cast<std::size_t>(half_edge_triangle(g)));
-  const Eigen::Vector3d second = triangle_normal(mesh, static_cast<std::size_t>(half_edge_triangle(h)));
-  const Eigen::Vector3d into_first = (half_edge_from(mesh, g) == a ? 1 : -1) * first.cross(along).normalized();
-  return std::atan2(-second.dot(into_first), second.dot(first));
-}
-
 /// Per vertex how sharp a crease passes through it, radians: the second of its edges by their bend inwards, since a
 /// crease has two edges at a vertex and noise rarely has.
 std::vector<double> creases(const TriangleMesh& mesh, const EdgeTable& table) {

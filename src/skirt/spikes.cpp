@@ -11,6 +11,7 @@
 #include "rhizodont/error.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 namespace rhizodont {
@@ -18,26 +19,37 @@ namespace {
 
 /// Vertices of the mesh that are tips.
 std::vector<bool> tips(const TriangleMesh& mesh, const SpikeOptions& options) {
-  std::vector<double> sum(mesh.vertices.size(), 0), least(mesh.vertices.size(), options.tip);
+  std::vector<double> sum(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto angles = triangle_angles(mesh, t);
     for (std::size_t i = 0; i < 3; ++i) sum[static_cast<std::size_t>(mesh.triangles[t][i])] += angles[i];
   }
   const EdgeTable table = edge_table(mesh);
+  constexpr double degrees = 180 / std::numbers::pi;
+  std::vector<bool> border(mesh.vertices.size(), false);
   for (std::size_t e = 0; e < table.size(); ++e)
     if (table.triangle_count(e) == 1)
-      for (const int v : table.vertices[e]) least[static_cast<std::size_t>(v)] = options.flap;
+      for (const int v : table.vertices[e]) border[static_cast<std::size_t>(v)] = true;
   std::vector<bool> tip;
-  for (std::size_t v = 0; v < sum.size(); ++v) tip.push_back(sum[v] * 180 / std::numbers::pi < least[v]);
+  for (std::size_t v = 0; v < sum.size(); ++v)
+    tip.push_back(sum[v] * degrees < (border[v] ? options.flap : options.tip));
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    if (std::abs(edge_bend(mesh, table, e)) * degrees <= options.fin) continue;
+    for (const int v : table.vertices[e])
+      if (border[static_cast<std::size_t>(v)]) tip[static_cast<std::size_t>(v)] = true;
+  }
   return tip;
 }
 
 }  // namespace
 
 std::vector<bool> triangles_without_spikes(const TriangleMesh& crown, const SpikeOptions& options) {
-  if (!(options.tip >= 0 && options.tip <= 360) || !(options.flap >= 0 && options.flap <= 180) || options.rounds < 1)
+  if (!(options.tip >= 0 && options.tip <= 360) || !(options.flap >= 0 && options.flap <= 180) ||
+      !(options.fin > 0 && options.fin <= 180) || options.rounds < 1)
     throw UsageError(
-        "The tip of a spike has 0 to 360 degrees, that of a flap 0 to 180, and there is at least one round.");
+        "The tip of a spike has 0 to 360 degrees, that of a flap and the edge of a fin 0 to 180, and there is at least "
+        "one "
+        "round.");
   std::vector<bool> keep(crown.triangles.size(), true);
   for (int round = 0; round < options.rounds; ++round) {
     const Submesh part = submesh(crown, keep);

@@ -184,5 +184,26 @@ TEST(Flipped, NegatesVolumeAndUndoesItself) {
   EXPECT_EQ(flipped(flipped(cube())).triangles, cube().triangles);
 }
 
+TEST(EdgeBend, RightAnglesOfACubeAndFlatDiagonals) {
+  TriangleMesh mesh = test::cube();
+  for (const double sign : {1.0, -1.0}) {
+    const EdgeTable table = edge_table(mesh);
+    int bent = 0;
+    for (std::size_t e = 0; e < table.size(); ++e) {
+      const double length = (mesh.vertices[static_cast<std::size_t>(table.vertices[e][0])] -
+                             mesh.vertices[static_cast<std::size_t>(table.vertices[e][1])])
+                                .norm();
+      const bool diagonal = length > 1.2;
+      EXPECT_NEAR(edge_bend(mesh, table, e), diagonal ? 0 : sign * std::numbers::pi / 2, 1e-12);
+      bent += diagonal ? 0 : 1;
+    }
+    EXPECT_EQ(bent, 12);
+    mesh = flipped(mesh);  // seen from inside every edge is a crease
+  }
+  const TriangleMesh open{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  const EdgeTable table = edge_table(open);
+  for (std::size_t e = 0; e < table.size(); ++e) EXPECT_EQ(edge_bend(open, table, e), 0) << "border";
+}
+
 }  // namespace
 }  // namespace rhizodont

@@ -83,10 +83,39 @@ TEST(Spikes, CornersOfTheBorderStayAndNeedlesGo) {
   EXPECT_EQ(dropped(triangles_without_spikes(triangle(1.8))), 2) << "58 degrees";
 }
 
+TEST(Spikes, AFinIsTakenOffAndARidgeIsNot) {
+  // A roof, open at its gables, whose ridge is bent by `bend` degrees.
+  const auto roof = [](double bend) {
+    TriangleMesh sheet = test::rectangle(8, 8, 4, 4);
+    const double slope = std::tan(bend / 2 * std::numbers::pi / 180);
+    for (Point& p : sheet.vertices) p.z() = -slope * std::abs(p.x() - 2);
+    return sheet;
+  };
+  SpikeOptions one_round;
+  one_round.rounds = 1;
+  EXPECT_EQ(dropped(triangles_without_spikes(roof(90))), 0);
+  const TriangleMesh sharp = roof(100);
+  const std::vector<bool> keep = triangles_without_spikes(sharp, one_round);
+  EXPECT_GT(dropped(keep), 0);
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    const Triangle& of = sharp.triangles[t];
+    const bool at_an_end = std::any_of(of.begin(), of.end(), [&](int v) {
+      const Point& p = sharp.vertices[static_cast<std::size_t>(v)];
+      return std::abs(p.x() - 2) < 1e-9 && std::abs(std::abs(p.y() - 2) - 2) < 1e-9;
+    });
+    EXPECT_EQ(keep[t], !at_an_end);
+  }
+  TriangleMesh folded = sharp;
+  for (Point& p : folded.vertices) p.z() = -p.z();
+  EXPECT_EQ(triangles_without_spikes(folded, one_round), keep) << "folded inwards";
+}
+
 TEST(Spikes, BadOptionsAreRefused) {
   const TriangleMesh sheet = test::rectangle(2, 2, 1, 1);
-  for (const SpikeOptions& bad : {SpikeOptions{-1, 40, 3}, SpikeOptions{361, 40, 3}, SpikeOptions{180, 181, 3},
-                                  SpikeOptions{180, 40, 0}, SpikeOptions{std::nan(""), 40, 3}})
+  for (const SpikeOptions& bad :
+       {SpikeOptions{-1, 40, 95, 3}, SpikeOptions{361, 40, 95, 3}, SpikeOptions{180, 181, 95, 3},
+        SpikeOptions{180, 40, 0, 3}, SpikeOptions{180, 40, 181, 3}, SpikeOptions{180, 40, 95, 0},
+        SpikeOptions{std::nan(""), 40, 95, 3}, SpikeOptions{180, 40, std::nan(""), 3}})
     EXPECT_THROW(triangles_without_spikes(sheet, bad), UsageError);
 }
 
