@@ -41,6 +41,7 @@ TrainingSample make_sample(const ToothFamilies& families, std::uint64_t seed, co
   result.normals = to_points(sample.target_normals);
   result.is_root = sample.target_root;
   result.type = sample.type;
+  result.form_axis = sample.form_axis.cast<float>();
   result.matched = to_points(sample.matched);
   result.matched_normals = to_points(sample.matched_normals);
   result.matched_root = sample.matched_root;

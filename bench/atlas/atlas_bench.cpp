@@ -8,6 +8,7 @@
 #include "crown_fit.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/self_intersection.hpp"
+#include "registration_error.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
@@ -118,6 +119,7 @@ int run(const std::filesystem::path& data, std::uint64_t seeds) {
   const ToothFamilies families = load_tooth_families(data);
   speed(families, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   soundness(families, seeds);
+  registration_table(families, seeds);
   nearness(families, data);
   return 0;
 }

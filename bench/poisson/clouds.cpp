@@ -19,7 +19,7 @@ std::vector<BenchPrediction> predict_validation_teeth(const std::filesystem::pat
   for (BenchTooth& tooth : load_validation_teeth(data_folder)) {
     const auto type = static_cast<std::size_t>(tooth_type_of_fdi(tooth.fdi));
     const CrownFrame frame = canonical_frame(tooth.crown, tooth.fdi, content.atlas.types[type]);
-    OrientedPoints predicted = complete_points(tooth.crown, tooth.fdi, frame.frame, content.network).cloud;
+    OrientedPoints predicted = complete_points(tooth.crown, tooth.fdi, frame, content.network).cloud;
     teeth.push_back({tooth.fdi, std::move(tooth.crown), std::move(tooth.tooth), std::move(predicted)});
   }
   return teeth;

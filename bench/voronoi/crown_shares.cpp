@@ -48,7 +48,7 @@ CrownCase prepare(const TriangleMesh& input, int fdi, const CompletionModels::Co
   result.crown = take_crown(input, models.atlas, std::nullopt, options, record).mesh;
   const CrownFrame frame =
       canonical_frame(result.crown, fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))]);
-  const PredictedTooth predicted = complete_points(result.crown, fdi, frame.frame, models.network);
+  const PredictedTooth predicted = complete_points(result.crown, fdi, frame, models.network);
   result.surface =
       fitted_guiding_surface(assemble_guiding_cloud(result.crown, predicted.cloud), result.crown, options.e).mesh;
   const Eigen::Vector3d axis = frame.frame.direction_to_world(Eigen::Vector3d::UnitZ());

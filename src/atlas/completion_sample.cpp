@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace rhizodont {
 namespace {
@@ -26,7 +27,8 @@ void check(const CompletionSampleOptions& options) {
   if (!share(options.paper_crop_share) || !share(options.gap_probability) || !share(options.skirt_probability) ||
       !share(options.lost_turn_share))
     throw UsageError("Shares of training samples lie between 0 and 1.");
-  if (!(options.scanner_noise_mm >= 0) || !(options.skirt_mm >= 0) || !(options.rotation_jitter_radians >= 0))
+  if (!(options.scanner_noise_mm >= 0) || !(options.skirt_mm >= 0) || !(options.rotation_jitter_radians >= 0) ||
+      !(options.form_axis_error_degrees >= 0))
     throw UsageError("Noise, skirt and jitter of training samples cannot be negative.");
 }
 
@@ -87,7 +89,8 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
   const SyntheticTooth tooth = generate_tooth(families, sample.type, random.bits());
   CroppedCrown crop = draw_cropped_crown(tooth, options.paper_crop_share, options.gap_probability, random);
   if (random.chance(options.skirt_probability)) add_skirt_remains(crop.mesh, options.skirt_mm, random);
-  const double jitter = options.rotation_jitter_radians * (random.chance(options.lost_turn_share) ? 3 : 1);
+  const bool lost = random.chance(options.lost_turn_share);
+  const double jitter = lost ? std::numbers::pi : options.rotation_jitter_radians;
   sample.frame = frame_of_crop(crop.mesh, random.uniform(-jitter, jitter) - tooth.crown_turn);
 
   sample.input.reserve(3 * options.input_points);
@@ -132,6 +135,10 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
   for (const Eigen::Vector3d& axis : tooth.root_axes)
     sample.root_axes.push_back(sample.frame.direction_to_canonical(axis));
   sample.growth_axis = sample.frame.direction_to_canonical(tooth.growth_axis);
+  const double error = options.form_axis_error_degrees * std::numbers::pi / 180 * (lost ? 3 : 1);
+  const Eigen::Vector3d axis =
+      sample.frame.direction_to_canonical(families.crown_axes[static_cast<std::size_t>(sample.type)]);
+  sample.form_axis = axis.head<2>() + Eigen::Vector2d(random.normal(0, error), random.normal(0, error));
   sample.junction = tooth.junction;
   sample.gum_line = crop.line;
   sample.furcation_z = tooth.furcation_z;

@@ -23,8 +23,9 @@ struct CompletionSampleOptions {
   double gap_probability = 0.3;           ///< share of crowns with missing interproximal surface, 0..1
   double skirt_probability = 0.2;         ///< share of crowns with remains of the gum along the cut, 0..1
   double skirt_mm = 0.9;                  ///< their largest width, >= 0
-  double lost_turn_share = 0.05;          ///< share of crowns whose rotation is off by up to three times the jitter
+  double lost_turn_share = 0.05;          ///< share of crowns that are turned anyhow about the growth axis, 0..1
   double rotation_jitter_radians = 0.15;  ///< half width of the error of the rotation about the growth axis, >= 0
+  double form_axis_error_degrees = 4.0;   ///< standard deviation of the error of `form_axis` along x and y, >= 0
 };
 
 /// One training pair: what inference would see of a crown, and the tooth it belongs to.
@@ -51,6 +52,8 @@ struct CompletionSample {
   JunctionHeight junction;                 ///< cemento-enamel junction in the generated tooth's millimetres
   GumLine gum_line;                        ///< where the crown was cut, in the generated tooth's millimetres
   double furcation_z = 0;                  ///< height of the highest branching there; 0 for a single root
+  /// x and y of the growth axis as laying the type's mean crown on the crop would show it: with its error.
+  Eigen::Vector2d form_axis = Eigen::Vector2d::Zero();
 };
 
 /// Makes training sample number `seed`: a random tooth of a random type, cropped and disturbed like a scan.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Reads the templates and the table of mean dimensions (Wheeler; Ash and Nelson, "Wheeler's Dental Anatomy").
+#include "atlas/mean_teeth.hpp"
 #include "atlas/self_crossing.hpp"
 #include "atlas/tooth_family.hpp"
 #include "atlas/tooth_template.hpp"
@@ -275,6 +276,9 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
   }
   CrownModelLoader(families, folder / "crowns" / "ssm", options.crown_modes, buccal).load(wanted);
   measure_turns(families);
+  tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
+    families.crown_axes[static_cast<std::size_t>(wanted[i])] = growth_axis(mean_crown(mean_tooth(families, wanted[i])));
+  });
   return families;
 }
 

@@ -79,6 +79,8 @@ struct ToothFamilies {
   std::vector<TemplateLoan> loans;
   /// Of left and right crowns; none where the models' folder is missing. Third molars borrow those of second molars.
   std::vector<FamilyCrownModel> crown_models;
+  /// Growth axis of each type's mean crown (mean_crown), unit, in the frame of its template.
+  std::array<Eigen::Vector3d, tooth_type_count> crown_axes;
 };
 
 /// Options of load_tooth_families.

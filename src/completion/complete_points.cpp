@@ -10,9 +10,10 @@
 
 namespace rhizodont {
 
-PredictedTooth complete_points(const TriangleMesh& crown, int fdi, const CanonicalFrame& frame,
+PredictedTooth complete_points(const TriangleMesh& crown, int fdi, const CrownFrame& crown_frame,
                                const CompletionNetwork& network) {
   constexpr std::uint64_t seed = 1;
+  const CanonicalFrame& frame = crown_frame.frame;
   const int type = fdi == 0 ? unknown_type : tooth_type_of_fdi(fdi);
   // As many points as in training and as uniform by area: a denser sample thinned to the same number would be more even
   // than anything the network has learned from.
@@ -21,7 +22,7 @@ PredictedTooth complete_points(const TriangleMesh& crown, int fdi, const Canonic
   points.reserve(samples.points.size());
   for (const Point& p : samples.points) points.push_back(frame.to_canonical(p).cast<float>());
 
-  const CompletedPoints completed = network.complete(points, type);
+  const CompletedPoints completed = network.complete(points, type, crown_frame.form_axis.cast<float>());
   PredictedTooth tooth;
   for (std::size_t i = 0; i < completed.points.size(); ++i) {
     tooth.cloud.points.push_back(frame.to_world(completed.points[i].cast<double>()));

@@ -17,12 +17,12 @@ struct PredictedTooth {
 /// Points of the whole tooth that belongs to a crown, as the completion network sees it (paper, section 3.3).
 /// @param crown    open crown, millimetres; any size and density of triangles
 /// @param fdi      FDI number; 0 where it is not known
-/// @param frame    the crown's canonical frame; the side and pose that the network works in
+/// @param frame    the crown's canonical frame: the side and pose that the network works in, and the axis of its form
 /// @param network  with its weights
 /// @return         in the crown's millimetres; the crown's points are the network's too, not the scan's
 /// The same for the same crown, whatever the number of threads. Throws InputError for a crown without area or far from
 /// a tooth's size, UsageError for an unknown FDI number.
-PredictedTooth complete_points(const TriangleMesh& crown, int fdi, const CanonicalFrame& frame,
+PredictedTooth complete_points(const TriangleMesh& crown, int fdi, const CrownFrame& frame,
                                const CompletionNetwork& network);
 
 }  // namespace rhizodont

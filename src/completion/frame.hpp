@@ -80,6 +80,9 @@ struct RegistrationOptions {
 struct CrownFrame {
   CanonicalFrame frame;    ///< z = growth_axis, centre = area_centroid; rotation about z from the registration
   double residual_mm = 0;  ///< as in RigidFit
+  /// x and y, canonical, of the mean crown's growth axis where it lies on this crown: how far the crown's form leans
+  /// against its border. A gum line leans with the gum, a cut across the tooth's long axis with the root.
+  Eigen::Vector2d form_axis = Eigen::Vector2d::Zero();
 };
 
 /// Canonical pose of an open crown with a known FDI number: axis and centre from the crown itself, rotation about the

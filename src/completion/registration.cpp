@@ -103,15 +103,19 @@ Nearest nearest(const Features& from, const Features& to) {
   const std::size_t count = to.size();
   std::vector<float> squared(count);
   for (std::size_t i = 0; i < from.size(); ++i) {
-    std::fill(squared.begin(), squared.end(), 0.0F);
-    for (std::size_t k = 0; k < 6; ++k) {
-      const float* row = to.rows[k].data();
-      const float at = from.rows[k][i];
-      for (std::size_t j = 0; j < count; ++j) squared[j] += (row[j] - at) * (row[j] - at);
+    std::array<const float*, 6> row{};
+    std::array<float, 6> at{};
+    for (std::size_t k = 0; k < 6; ++k) row[k] = to.rows[k].data(), at[k] = from.rows[k][i];
+    for (std::size_t j = 0; j < count; ++j) {
+      float sum = 0;
+      for (std::size_t k = 0; k < 6; ++k) sum += (row[k][j] - at[k]) * (row[k][j] - at[k]);
+      squared[j] = sum;
     }
-    const auto best = std::min_element(squared.begin(), squared.end());
-    result.squared.push_back(static_cast<double>(*best));
-    result.index.push_back(best - squared.begin());
+    // The least first and then where it is: both loops go several numbers at a time.
+    float least = squared[0];
+    for (std::size_t j = 1; j < count; ++j) least = squared[j] < least ? squared[j] : least;
+    result.squared.push_back(static_cast<double>(least));
+    result.index.push_back(std::find(squared.begin(), squared.end(), least) - squared.begin());
   }
   return result;
 }
@@ -183,7 +187,9 @@ Similarity refined(const Cloud& crown, const Cloud& mean, Similarity at, const R
       from.col(k) = crown.points.col(c);
       to.col(k) = mean.points.col(m);
     }
-    at = similarity_of_pairs(from, to, {0.8, 1.3});
+    const Similarity before = std::exchange(at, similarity_of_pairs(from, to, {0.8, 1.3}));
+    constexpr double still = 1e-3;  // radians and millimetres
+    if ((at.rotation - before.rotation).norm() < still && (at.shift - before.shift).norm() < still) break;
   }
   return at;
 }
@@ -306,7 +312,9 @@ CrownFrame frame_from(const OrientedPoints& points, const Eigen::Vector3d& axis,
   // The axis is the crown's own: of the registration only the turn about it is kept.
   const Eigen::Matrix3d& r = found.at.rotation;
   CrownFrame result;
-  result.frame = turned_frame(upright, about_z(std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1))));
+  const Eigen::Matrix3d turn = about_z(std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1)));
+  result.frame = turned_frame(upright, turn);
+  result.form_axis = (turn * r.transpose()).col(2).head<2>();
   result.residual_mm = found.residual / found.at.scale;
   return result;
 }

@@ -70,7 +70,7 @@ torch::Tensor largest(const torch::Tensor& x) { return std::get<0>(x.to(torch::k
 }  // namespace
 
 CrownBatch make_crown_batch(const CompletionShape& shape, const std::vector<std::vector<float>>& crowns,
-                            const std::vector<std::int64_t>& types) {
+                            const std::vector<std::int64_t>& types, const std::vector<float>& form_axes) {
   const auto batch = static_cast<std::int64_t>(crowns.size());
   CrownBatch result;
   result.points = torch::empty({batch, shape.input_points, 3});
@@ -84,6 +84,7 @@ CrownBatch make_crown_batch(const CompletionShape& shape, const std::vector<std:
     }
   });
   result.types = torch::tensor(types, torch::kLong);
+  result.form_axes = torch::tensor(form_axes, torch::kFloat).view({batch, 2});
   const torch::Tensor first = result.points.narrow(1, 0, shape.centres_1).contiguous();
   const torch::Tensor second = result.points.narrow(1, 0, shape.centres_2).contiguous();
   result.near_input = batch_neighbours(result.points, result.points, group_neighbours);
@@ -165,6 +166,7 @@ AdaPoinTrImpl::AdaPoinTrImpl(const CompletionShape& given) : shape(given) {
   edge_4 = register_module("edge_4", layers::EdgeConv(64, 128, true));
   input_projection = register_module("input_projection", layers::Mlp(Widths{128, width, width}));
   position = register_module("position", layers::Mlp(Widths{position_features, 128, width}));
+  form_axis = register_module("form_axis", layers::Mlp(Widths{2, 64, width}));
   encoder = register_module("encoder", torch::nn::ModuleList());
   for (int i = 0; i < shape.encoder_depth; ++i) encoder->push_back(EncoderBlock(shape, i == 0));
   norm_memory = register_module("norm_memory", layers::Norm(width));
@@ -190,8 +192,9 @@ AdaPoinTrImpl::AdaPoinTrImpl(const CompletionShape& given) : shape(given) {
   torch::NoGradGuard no_gradient;
   for (layers::Linear* linear :
        {&input_lift, &position->layers.front(), &coarse_anchor, &query_position, &query_identity, &head_position_in})
-    (*linear)->weight.normal_(0, 0.3);  // few inputs, and all depends on them
-  head_out->weight.mul_(0.1);           // patches start as they are on the type's tooth
+    (*linear)->weight.normal_(0, 0.3);              // few inputs, and all depends on them
+  form_axis->layers.front()->weight.normal_(0, 5);  // a tenth of a radian is much
+  head_out->weight.mul_(0.1);                       // patches start as they are on the type's tooth
 }
 
 void AdaPoinTrImpl::set_patches(int type, std::span<const float> points, std::span<const float> normals) {
@@ -222,9 +225,11 @@ torch::Tensor AdaPoinTrImpl::encode(const CrownBatch& crowns, Precision precisio
   const torch::Tensor f3 = edge_3->forward(f2, f2, crowns.near_1, precision);
   const torch::Tensor f4 = edge_4->forward(f3, f3.narrow(1, 0, shape.centres_2), crowns.near_2_of_1, precision);
   const torch::Tensor centres = crowns.points.narrow(1, 0, shape.centres_2);
-  torch::Tensor x = input_projection->forward(f4, precision).to(torch::kFloat) +
-                    position->forward(fourier_features(centres), precision) +
-                    type_embedding.index_select(0, crowns.types).unsqueeze(1);
+  torch::Tensor x =
+      input_projection->forward(f4, precision).to(torch::kFloat) +
+      position->forward(fourier_features(centres), precision) +
+      (type_embedding.index_select(0, crowns.types) + form_axis->forward(crowns.form_axes, precision).to(torch::kFloat))
+          .unsqueeze(1);
   for (const auto& block : *encoder) x = block->as<EncoderBlock>()->forward(x, crowns.near_2, precision);
   return norm_memory->forward(x);
 }

@@ -17,6 +17,7 @@ namespace rhizodont {
 struct CrownBatch {
   torch::Tensor points;           ///< float, B x input_points x 3
   torch::Tensor types;            ///< int64, B; 0..15 or unknown_type
+  torch::Tensor form_axes;        ///< float, B x 2: TrainingSample::form_axis
   torch::Tensor near_input;       ///< int32, B x input_points x 16: among the input
   torch::Tensor near_1_of_input;  ///< int32, B x centres_1 x 16: of the first centres, among the input
   torch::Tensor near_1;           ///< int32, B x centres_1 x 16: among the first centres
@@ -25,9 +26,9 @@ struct CrownBatch {
 };
 
 /// Puts each crown (x, y, z of point 0, ...; at least `input_points` points) in farthest-point order, thins it and
-/// finds neighbours. The result does not depend on the order of a crown's points.
+/// finds neighbours. The result does not depend on the order of a crown's points. `form_axes`: x and y for each crown.
 CrownBatch make_crown_batch(const CompletionShape& shape, const std::vector<std::vector<float>>& crowns,
-                            const std::vector<std::int64_t>& types);
+                            const std::vector<std::int64_t>& types, const std::vector<float>& form_axes);
 
 /// What the network says, canonical units.
 struct Prediction {
@@ -86,7 +87,7 @@ struct Starts {
 ///   of the patches, which a small network bends to the crown at hand; the rebuild head moves a patch's points and
 ///   turns its normals from there. They replace the candidates and their ranking, which gets no gradient in the
 ///   published code.
-/// - The tooth type is an embedding added to every token.
+/// - The tooth type is an embedding added to every token, and so is how far the crown's form leans against its border.
 /// - Coordinates enter with sines and cosines of several wavelengths (Tancik et al., Fourier Features, 2020).
 /// - Edge convolutions normalise after the maximum, per point; the rebuild head has no batch normalisation.
 /// - Denoising queries start at disturbed points of the target, root included, instead of the input's; nothing of the
@@ -107,7 +108,7 @@ struct AdaPoinTrImpl : torch::nn::Module {
   torch::Tensor patches, patch_normals, type_embedding;
   layers::Linear input_lift{nullptr};
   layers::EdgeConv edge_1{nullptr}, edge_2{nullptr}, edge_3{nullptr}, edge_4{nullptr};
-  layers::Mlp input_projection{nullptr}, position{nullptr}, to_global{nullptr};
+  layers::Mlp input_projection{nullptr}, position{nullptr}, form_axis{nullptr}, to_global{nullptr};
   torch::nn::ModuleList encoder{nullptr}, decoder{nullptr};
   layers::Linear coarse_global{nullptr}, coarse_anchor{nullptr}, query_global{nullptr}, query_position{nullptr};
   layers::Linear query_identity{nullptr};

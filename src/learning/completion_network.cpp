@@ -39,9 +39,11 @@ CompletionNetwork CompletionNetwork::load(const std::filesystem::path& path) {
   return CompletionNetwork(std::move(impl));
 }
 
-CompletedPoints CompletionNetwork::complete(std::span<const Eigen::Vector3f> crown, int type) const {
+CompletedPoints CompletionNetwork::complete(std::span<const Eigen::Vector3f> crown, int type,
+                                            const Eigen::Vector2f& form_axis) const {
   constexpr float widest = 4;
   if (type < 0 || type > unknown_type) throw UsageError("The completion network knows no such tooth type.");
+  if (!form_axis.allFinite()) throw InputError("The axis of the crown's form is not a number.");
   if (crown.size() < static_cast<std::size_t>(impl_->shape.input_points))
     throw InputError("The crown has too few points for the completion network.");
   std::vector<float> xyz;
@@ -53,7 +55,7 @@ CompletedPoints CompletionNetwork::complete(std::span<const Eigen::Vector3f> cro
   // One thread: sums then have one order, whatever the machine is doing; several teeth go side by side instead.
   const TensorThreads one_thread(1);
   torch::NoGradGuard no_gradient;
-  const CrownBatch batch = make_crown_batch(impl_->shape, {xyz}, {type});
+  const CrownBatch batch = make_crown_batch(impl_->shape, {xyz}, {type}, {form_axis.x(), form_axis.y()});
   if ((batch.points[0][0] - batch.points[0][impl_->shape.centres_2 - 1]).abs().max().item<float>() == 0)
     throw InputError("The crown's points coincide.");
   const Prediction prediction = impl_->network->forward(batch, {}, {}, layers::Precision::single);

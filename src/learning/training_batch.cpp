@@ -182,7 +182,8 @@ void check_sample(const TrainingSample& sample, const CompletionShape& shape) {
   if (sample.target.empty() || sample.normals.size() != sample.target.size() ||
       sample.is_root.size() != sample.target.size())
     throw InputError("A training sample's target points, normals and marks are not equally many.");
-  if (!all_finite(sample.input) || !all_finite(sample.target) || !all_finite(sample.normals))
+  if (!all_finite(sample.input) || !all_finite(sample.target) || !all_finite(sample.normals) ||
+      !sample.form_axis.allFinite())
     throw InputError("A training sample has values that are not numbers.");
   if (sample.matched_normals.size() != sample.matched.size() || sample.matched_root.size() != sample.matched.size() ||
       !all_finite(sample.matched) || !all_finite(sample.matched_normals))
@@ -194,6 +195,7 @@ TrainingBatch make_training_batch(const SampleProvider& provider, const std::vec
                                   std::uint64_t first, int count, const TrainingOptions& options, bool training) {
   std::vector<std::vector<float>> crowns;
   std::vector<std::int64_t> types;
+  std::vector<float> form_axes;
   TrainingBatch batch;
   TargetBatch& target = batch.target;
   const std::int64_t seeds = training ? options.denoise_queries : 0;
@@ -216,6 +218,7 @@ TrainingBatch make_training_batch(const SampleProvider& provider, const std::vec
     const bool hide = training && std::uniform_real_distribution<double>(0, 1)(random) < options.unknown_share;
     const int type = hide ? unknown_type : sample.type;
     types.push_back(type);
+    form_axes.insert(form_axes.end(), sample.form_axis.data(), sample.form_axis.data() + 2);
     // Who does not know the type cannot know which point is which either.
     const bool matched =
         type != unknown_type && !sample.matched.empty() && !layouts[static_cast<std::size_t>(type)].empty();
@@ -230,7 +233,7 @@ TrainingBatch make_training_batch(const SampleProvider& provider, const std::vec
       add_seeds(xyz, options, random, starts, patches);
     }
   }
-  batch.crowns = make_crown_batch(options.shape, crowns, types);
+  batch.crowns = make_crown_batch(options.shape, crowns, types, form_axes);
   return batch;
 }
 

@@ -20,6 +20,9 @@ struct TrainingSample {
   std::vector<Eigen::Vector3f> normals;  ///< unit outward normals of `target`
   std::vector<std::uint8_t> is_root;     ///< 1 where a target point is on the part that the crop took away
   int type = unknown_type;               ///< 0..15, or unknown_type
+  /// x and y of the axis of the crown's form, as laying the type's mean crown on it would say: by how much that form
+  /// leans against the border, which gives z.
+  Eigen::Vector2f form_axis = Eigen::Vector2f::Zero();
 
   /// Points of the whole tooth that correspond: in all samples of a type that have them, the same index is the same
   /// anatomical place, and they are equally many. Empty where no correspondence is known.

@@ -11,7 +11,7 @@
 namespace rhizodont {
 namespace {
 
-const std::string format_name = "rhizodont completion 3";
+const std::string format_name = "rhizodont completion 4";
 
 constexpr std::array<std::pair<const char*, int CompletionShape::*>, 10> sizes{{
     {"input_points", &CompletionShape::input_points},

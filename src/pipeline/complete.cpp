@@ -170,7 +170,7 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   const CrownFrame frame = find_frame(crown.mesh, models.atlas, options, record);
   clock.begin("completion network");
   record.model = models.network.metadata();
-  PredictedTooth predicted = complete_points(crown.mesh, record.fdi, frame.frame, models.network);
+  PredictedTooth predicted = complete_points(crown.mesh, record.fdi, frame, models.network);
   clock.begin("orientation");
   const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, predicted.cloud);
   clock.begin("guiding surface");

@@ -12,8 +12,10 @@
 #include <tbb/global_control.h>
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 #include <string>
 
 namespace rhizodont {
@@ -94,6 +96,49 @@ TEST(CanonicalFrameOfCrowns, mirrorImageIsTheOtherSidesTooth) {
     const CanonicalFrame second = canonical_frame(image, other, mean_of(other)).frame;
     EXPECT_LT(std::abs(angle_between(first, crown, second, image)), 0.06) << sample.fdi;
   }
+}
+
+/// The triangles above a plane `depth` below the top that leans by `radians` to where `frame` has +y.
+TriangleMesh cut(const TriangleMesh& crown, const CanonicalFrame& frame, double depth_mm, double radians) {
+  const auto height = [&](const Point& p) {
+    const Point q = frame.scale * frame.to_canonical(p);
+    return q.z() - std::tan(radians) * q.y();
+  };
+  double top = -1e9;
+  for (const Point& p : crown.vertices) top = std::max(top, height(p));
+  TriangleMesh result = crown;
+  std::erase_if(result.triangles, [&](const Triangle& t) {
+    return std::any_of(t.begin(), t.end(),
+                       [&](int v) { return height(crown.vertices[static_cast<std::size_t>(v)]) < top - depth_mm; });
+  });
+  return result;
+}
+
+TEST(CanonicalFrameOfCrowns, axisOfTheFormStaysWhereTheBorderLeans) {
+  constexpr double degrees = 180 / std::numbers::pi;
+  const auto axis = [](const CrownFrame& found) {
+    const double z = std::sqrt(1 - found.form_axis.squaredNorm());
+    return found.frame.direction_to_world({found.form_axis.x(), found.form_axis.y(), z});
+  };
+  double sum = 0;
+  for (const Sample& sample : samples) {
+    const TriangleMesh crown = sample_crown(sample);
+    const CrownFrame whole = canonical_frame(crown, sample.fdi, mean_of(sample.fdi));
+    for (const double lean : {-0.2, 0.2}) {
+      const TriangleMesh part = cut(crown, whole.frame, 6.5, lean);
+      const CrownFrame found = canonical_frame(part, sample.fdi, mean_of(sample.fdi));
+      const double form = std::acos(axis(found).dot(axis(whole))) * degrees;
+      const double border = std::acos(growth_axis(part).dot(growth_axis(crown))) * degrees;
+      EXPECT_GT(border, 6) << sample.fdi;
+      EXPECT_LT(form, border) << sample.fdi << " lean " << lean;
+      sum += form / 10;
+    }
+    const TriangleMesh image = mirrored(crown);
+    const int other = fdi_of_type(tooth_type_of_fdi(sample.fdi), !is_right_side(sample.fdi));
+    const Eigen::Vector3d mirror_axis = axis(canonical_frame(image, other, mean_of(other)));
+    EXPECT_LT((Eigen::Vector3d(-mirror_axis.x(), mirror_axis.y(), mirror_axis.z()) - axis(whole)).norm(), 0.06);
+  }
+  EXPECT_LT(sum, 4) << "degrees, mean over crowns and cuts";
 }
 
 TEST(CanonicalFrameOfCrowns, isTheSameForAnyNumberOfThreads) {

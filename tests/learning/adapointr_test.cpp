@@ -78,6 +78,7 @@ TEST(AdaPoinTr, GradientReachesEveryParameter) {
   const TrainingOptions options = testing::tiny_options();
   const TrainingBatch batch = make_training_batch(testing::tiny_sample, tiny_layouts(), 0, 17, options, true);
   batch.crowns.types.copy_(torch::arange(17));
+  batch.crowns.form_axes.uniform_(-0.2, 0.2);
   const Prediction p = network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
   training_loss(p, batch.target, options).total.backward();
   for (const auto& item : network->named_parameters()) {
@@ -85,6 +86,17 @@ TEST(AdaPoinTr, GradientReachesEveryParameter) {
     EXPECT_GT(item.value().grad().abs().max().item<double>(), 1e-9) << item.key();
   }
   EXPECT_GT(std::get<0>(network->patches.grad().abs().flatten(1).max(1)).min().item<double>(), 0);
+}
+
+TEST(AdaPoinTr, AxisOfTheFormMovesItsOwnCrownAlone) {
+  torch::manual_seed(6);
+  AdaPoinTr network(testing::tiny_shape());
+  TrainingBatch batch = tiny_batch();
+  const Prediction before = network->forward(batch.crowns, {}, {}, Precision::single);
+  batch.crowns.form_axes[1][0] = 0.1;
+  const Prediction after = network->forward(batch.crowns, {}, {}, Precision::single);
+  EXPECT_TRUE(torch::equal(before.fine[0], after.fine[0]));
+  EXPECT_GT((before.fine[1] - after.fine[1]).abs().max().item<double>(), 1e-5);
 }
 
 TEST(AdaPoinTr, ExpectedDistancesMoveNothingElse) {
@@ -110,7 +122,8 @@ TEST(AdaPoinTr, CrownsDoNotDependOnTheOrderOfTheirPoints) {
   for (const std::size_t i : order) given.insert(given.end(), sample.input[i].data(), sample.input[i].data() + 3);
   std::shuffle(order.begin(), order.end(), std::mt19937(1));
   for (const std::size_t i : order) shuffled.insert(shuffled.end(), sample.input[i].data(), sample.input[i].data() + 3);
-  const CrownBatch a = make_crown_batch(shape, {given}, {3}), b = make_crown_batch(shape, {shuffled}, {3});
+  const CrownBatch a = make_crown_batch(shape, {given}, {3}, {0, 0}),
+                   b = make_crown_batch(shape, {shuffled}, {3}, {0, 0});
   EXPECT_TRUE(torch::equal(a.points, b.points));
   EXPECT_TRUE(torch::equal(a.near_input, b.near_input));
   EXPECT_TRUE(torch::equal(a.near_2, b.near_2));

@@ -261,6 +261,7 @@ TEST_F(Training, NetworkRefusesBadCrowns) {
   EXPECT_NO_THROW(network.complete(crown, 0));
   EXPECT_THROW(network.complete(crown, 17), UsageError);
   EXPECT_THROW(network.complete(crown, -1), UsageError);
+  EXPECT_THROW(network.complete(crown, 0, Eigen::Vector2f(0, std::nanf(""))), InputError);
   EXPECT_THROW(network.complete(std::span(crown).first(63), 0), InputError);
   auto bad = crown;
   bad[5].y() = std::numeric_limits<float>::quiet_NaN();

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "atlas/tooth_family.hpp"
+
+#include <cstdint>
+
+namespace rhizodont {
+
+/// Prints a table of how well generated crowns are laid on the mean crown of their type: the turn about the growth axis
+/// and the axis of the crown's form, against what the generator knows. `count` crowns per type.
+void registration_table(const ToothFamilies& families, std::uint64_t count, const RegistrationOptions& options = {});
+
+}  // namespace rhizodont
