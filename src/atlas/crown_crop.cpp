@@ -5,6 +5,7 @@
 // Geometry and Meshing Topology", 3.3.
 #include "atlas/crown_crop.hpp"
 
+#include "mesh/disjoint_sets.hpp"
 #include "mesh/principal_axis.hpp"
 #include "rhizodont/error.hpp"
 
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
 #include <unordered_map>
 #include <utility>
 
@@ -84,29 +84,18 @@ class Clipper {
   TriangleMesh result_;
 };
 
-int find_set(std::vector<int>& parent, int v) {
-  while (parent[static_cast<std::size_t>(v)] != v) {
-    auto& up = parent[static_cast<std::size_t>(v)];
-    up = parent[static_cast<std::size_t>(up)];
-    v = up;
-  }
-  return v;
-}
-
 TriangleMesh highest_piece(const TriangleMesh& mesh) {
-  std::vector<int> parent(mesh.vertices.size());
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets sets(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles)
-    for (std::size_t i = 0; i < 2; ++i)
-      parent[static_cast<std::size_t>(find_set(parent, t[i]))] = find_set(parent, t[i + 1]);
+    for (std::size_t i = 0; i < 2; ++i) sets.join(t[i], t[i + 1]);
   std::size_t top = 0;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     if (mesh.vertices[v].z() > mesh.vertices[top].z()) top = v;
-  const int wanted = find_set(parent, static_cast<int>(top));
+  const int wanted = sets.find(static_cast<int>(top));
   TriangleMesh piece;
   std::vector<int> index(mesh.vertices.size(), -1);
   for (const Triangle& t : mesh.triangles) {
-    if (find_set(parent, t[0]) != wanted) continue;
+    if (sets.find(t[0]) != wanted) continue;
     Triangle kept{};
     for (std::size_t i = 0; i < 3; ++i) {
       int& at = index[static_cast<std::size_t>(t[i])];

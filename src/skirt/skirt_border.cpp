@@ -10,6 +10,7 @@
 #include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
+#include "skirt/border.hpp"
 #include "skirt/minimum_cut.hpp"
 
 #include <algorithm>
@@ -98,43 +99,6 @@ std::pair<std::vector<int>, int> pieces_of_vertices(const TriangleMesh& mesh, co
   return {piece, count};
 }
 
-/// Vertices of the longest connected part of the border.
-std::vector<bool> outer_border(const TriangleMesh& mesh) {
-  const EdgeTable table = edge_table(mesh);
-  std::vector<std::vector<int>> next(mesh.vertices.size());
-  for (std::size_t e = 0; e < table.size(); ++e) {
-    if (table.triangle_count(e) != 1) continue;
-    const auto [a, b] = table.vertices[e];
-    next[static_cast<std::size_t>(a)].push_back(b);
-    next[static_cast<std::size_t>(b)].push_back(a);
-  }
-  std::vector<bool> seen(mesh.vertices.size(), false), longest;
-  double best = -1;
-  for (std::size_t seed = 0; seed < next.size(); ++seed) {
-    if (seen[seed] || next[seed].empty()) continue;
-    std::vector<int> stack{static_cast<int>(seed)};
-    std::vector<bool> part(mesh.vertices.size(), false);
-    double length = 0;
-    seen[seed] = part[seed] = true;
-    while (!stack.empty()) {
-      const int v = stack.back();
-      stack.pop_back();
-      for (const int w : next[static_cast<std::size_t>(v)]) {
-        length += (mesh.vertices[static_cast<std::size_t>(v)] - mesh.vertices[static_cast<std::size_t>(w)]).norm() / 2;
-        if (seen[static_cast<std::size_t>(w)]) continue;
-        seen[static_cast<std::size_t>(w)] = part[static_cast<std::size_t>(w)] = true;
-        stack.push_back(w);
-      }
-    }
-    if (length > best) {
-      best = length;
-      longest = std::move(part);
-    }
-  }
-  if (longest.empty()) longest.assign(mesh.vertices.size(), false);
-  return longest;
-}
-
 /// One piece of tooth; skirt only where it comes from the outer border.
 void remove_islands(const TriangleMesh& mesh, const std::vector<bool>& outer, const std::vector<double>& areas,
                     std::vector<bool>& is_tooth) {
@@ -197,7 +161,8 @@ std::vector<bool> tooth_triangles(const TriangleMesh& crown, const std::vector<f
     throw UsageError("There must be one confidence for each vertex of the crown.");
   const std::vector<double> areas = vertex_areas(crown);
   const std::vector<CutEdge> edges = cut_edges(crown, options);
-  const std::vector<bool> outer = outer_border(crown);
+  std::vector<bool> outer(crown.vertices.size(), false);
+  for (const int v : crown_border(crown).outer) outer[static_cast<std::size_t>(v)] = true;
   std::vector<bool> keep;
   for (double bias = log_odds(options.threshold), strictest = bias + 3; bias <= strictest; bias += 1) {
     std::vector<bool> is_tooth = cut(confidence, areas, edges, bias);

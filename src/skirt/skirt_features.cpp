@@ -6,19 +6,17 @@
 //   begins with a crease.
 #include "skirt/skirt_features.hpp"
 
-#include "mesh/adjacency.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
 #include "operators/eigenbasis.hpp"
 #include "operators/geodesic.hpp"
 #include "operators/surface_operators.hpp"
 #include "rhizodont/error.hpp"
+#include "skirt/border.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <numbers>
 
 namespace rhizodont {
@@ -26,42 +24,6 @@ namespace {
 
 constexpr int signatures = surface_feature_count - SurfaceFeature::signature;
 constexpr double unit_mm = 6;
-
-struct Border {
-  std::vector<int> all;    ///< vertices of border edges
-  std::vector<int> outer;  ///< those of the longest connected part
-};
-
-Border border_of(const TriangleMesh& mesh) {
-  const EdgeTable edges = edge_table(mesh);
-  DisjointSets sets(mesh.vertices.size());
-  std::vector<bool> at_border(mesh.vertices.size(), false);
-  std::map<int, double> length;
-  for (int pass = 0; pass < 2; ++pass) {
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      if (edges.triangle_count(e) != 1) continue;
-      const auto [a, b] = edges.vertices[e];
-      if (pass == 0) {
-        at_border[static_cast<std::size_t>(a)] = at_border[static_cast<std::size_t>(b)] = true;
-        sets.join(a, b);
-      } else {
-        length[sets.find(a)] +=
-            (mesh.vertices[static_cast<std::size_t>(a)] - mesh.vertices[static_cast<std::size_t>(b)]).norm();
-      }
-    }
-  }
-  if (length.empty()) throw InputError("The crown is closed: a skirt is looked for at a border.");
-  const int longest = std::max_element(length.begin(), length.end(), [](const auto& x, const auto& y) {
-                        return x.second < y.second;
-                      })->first;
-  Border border;
-  for (int v = 0; v < static_cast<int>(at_border.size()); ++v) {
-    if (!at_border[static_cast<std::size_t>(v)]) continue;
-    border.all.push_back(v);
-    if (sets.find(v) == longest) border.outer.push_back(v);
-  }
-  return border;
-}
 
 Eigen::Matrix3d upright(const TriangleMesh& crown) {
   const Eigen::Vector3d axis = area_vector(crown);
@@ -114,7 +76,8 @@ SurfaceSample skirt_features(const TriangleMesh& crown, int eigenvectors) {
   const Eigen::MatrixX3d positions = positions_in_units(crown, operators);
   const Eigen::VectorXd fine = curvature(operators, positions, 0.35 / operators.unit);
   const Eigen::VectorXd coarse = curvature(operators, positions, 0.9 / operators.unit);
-  const Border border = border_of(crown);
+  const CrownBorder border = crown_border(crown);
+  if (border.all.empty()) throw InputError("The crown is closed: a skirt is looked for at a border.");
   const std::vector<double> to_border = geodesic_distances(crown, border.all);
   const std::vector<double> to_outer = geodesic_distances(crown, border.outer);
   const Eigen::Matrix3d turn = upright(crown);
