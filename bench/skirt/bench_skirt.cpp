@@ -88,6 +88,19 @@ void print_agreement(const ToothFamilies& families, const SurfaceNetwork& networ
   cleaned.print("that copy, border drawn");
 }
 
+void run(const std::filesystem::path& data, const std::filesystem::path& weights) {
+  const SurfaceNetwork network = SurfaceNetwork::load(weights);
+  fmt::print("| vertices | judging, s | border, s | taking off, s | in all, s |\n|---|---|---|---|---|\n");
+  std::vector<double> sizes, seconds;
+  for (const BenchTooth& tooth : load_validation_teeth(data)) {
+    if (tooth.fdi != 36 && tooth.fdi != 35) continue;
+    TriangleMesh crown = refined(tooth.crown);
+    for (int i = 0; i < (tooth.fdi == 36 ? 3 : 2); ++i, crown = refined(crown))
+      print_times(crown, network, sizes, seconds);
+  }
+  print_agreement(load_tooth_families(data), network, 24);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -95,15 +108,11 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: bench_skirt DATA WEIGHTS\n");
     return 2;
   }
-  const SurfaceNetwork network = SurfaceNetwork::load(argv[2]);
-  fmt::print("| vertices | judging, s | border, s | taking off, s | in all, s |\n|---|---|---|---|---|\n");
-  std::vector<double> sizes, seconds;
-  for (const BenchTooth& tooth : load_validation_teeth(argv[1])) {
-    if (tooth.fdi != 36 && tooth.fdi != 35) continue;
-    TriangleMesh crown = refined(tooth.crown);
-    for (int i = 0; i < (tooth.fdi == 36 ? 3 : 2); ++i, crown = refined(crown))
-      print_times(crown, network, sizes, seconds);
+  try {
+    run(argv[1], argv[2]);
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 1;
   }
-  print_agreement(load_tooth_families(argv[1]), network, 24);
-  return 0;
 }
