@@ -16,6 +16,9 @@
 #include <fmt/core.h>
 
 #include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <vector>
 
 namespace {
 
