@@ -13,8 +13,11 @@ program=build/apps/rhizodont/rhizodont
 mkdir -p "$out"
 for crown in "$crowns"/crown_*.ply; do
   fdi=$(basename "${crown%.ply}" | sed s/crown_//)
-  "$program" complete "$crown" --fdi "$fdi" --skirt auto --skirt-confidence "$out/cut_$fdi.ply" -o "$out/tooth_$fdi.ply" \
-    --report "$out/tooth_$fdi.json" --quiet
+  if ! "$program" complete "$crown" --fdi "$fdi" --skirt auto --skirt-confidence "$out/cut_$fdi.ply" \
+    -o "$out/tooth_$fdi.ply" --report "$out/tooth_$fdi.json" --quiet; then
+    echo "$crown: no tooth, no picture" >&2
+    continue
+  fi
   axis=$(/usr/bin/python3 -c 'import json, sys; print(*json.load(open(sys.argv[1]))["frame"]["growth_axis"], sep=",")' \
     "$out/tooth_$fdi.json")
   look=(--axis="$axis" --views front,back,left,right --wireframe --width 480 --height 480)

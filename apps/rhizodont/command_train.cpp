@@ -85,8 +85,8 @@ SPDX-License-Identifier: GPL-3.0-or-later
 `{0}` holds the weights (safetensors, half precision, {1:.1f} MB). This card is written by `rhizodont train --export`.
 
 ## What it is
-AdaPoinTr (Yu et al., 2023) with learned starting points per tooth type, {2} crown points in, {3} points with normals
-out, in the canonical pose (unit 12 mm). How it differs from the published network: `src/learning/adapointr.hpp`.
+AdaPoinTr (Yu et al., 2023) with learned starting points per tooth type; in go {2} crown points and how far the crown's
+form leans against its border, out come {3} points with normals, in the canonical pose (unit 12 mm). How it differs from the published network: `src/learning/adapointr.hpp`.
 
 ## What it must not be used for
 Its roots are a guess from the crown alone: typical for a tooth of that type and size, not the patient's anatomy. They

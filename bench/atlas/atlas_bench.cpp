@@ -119,7 +119,7 @@ int run(const std::filesystem::path& data, std::uint64_t seeds) {
   const ToothFamilies families = load_tooth_families(data);
   speed(families, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   soundness(families, seeds);
-  registration_table(families, seeds);
+  registration_table(families, std::max<std::uint64_t>(seeds, 2));
   nearness(families, data);
   return 0;
 }

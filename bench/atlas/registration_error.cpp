@@ -9,6 +9,7 @@
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -43,7 +44,7 @@ Outcome register_generated(const ToothFamilies& families, const Atlas& atlas, in
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const Eigen::Matrix3d r = found.frame.rotation * truth.rotation.transpose();
   outcome.turn = std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
-  outcome.leans = found.frame.direction_to_canonical(families.crown_axes[static_cast<std::size_t>(type)]).head<2>();
+  outcome.leans = found.frame.direction_to_canonical(tooth.crown_axis).head<2>();
   outcome.measured = found.form_axis;
   return outcome;
 }
@@ -58,7 +59,8 @@ void registration_table(const ToothFamilies& families, std::uint64_t count, cons
     for (std::uint64_t i = 0; i < count; ++i) list.push_back(register_generated(families, atlas, type, i, options));
   });
   fmt::print(
-      "| tooth | ms | turn within 0.1 rad | over 0.5 | true lean of the form, x / y degrees | slope of the registered "
+      "| tooth | ms | turn within 0.1 rad | over 0.5 | deviation of the form's true lean, x / y degrees | slope of the "
+      "registered "
       "on it | bias | "
       "deviation of the rest |\n|---|---|---|---|---|---|---|---|\n");
   for (int type = 0; type < tooth_type_count; ++type) {

@@ -9,7 +9,8 @@
 namespace rhizodont {
 
 /// Prints a table of how well generated crowns are laid on the mean crown of their type: the turn about the growth axis
-/// and the axis of the crown's form, against what the generator knows. `count` crowns per type.
+/// and the axis of the crown's form, against what the generator knows. `count` crowns per type, >= 2. The registered
+/// lean would be the true one with a slope of 1, no bias and no rest.
 void registration_table(const ToothFamilies& families, std::uint64_t count, const RegistrationOptions& options = {});
 
 }  // namespace rhizodont

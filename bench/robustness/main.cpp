@@ -3,7 +3,7 @@
 
 // How the error of predicted roots depends on what is wrong with a crown: generated teeth that no weights were trained
 // on, each with one thing made worse by steps while all else stays as it is.
-// usage: bench_robustness DATA_FOLDER MODELS_FOLDER [CSV] [TEETH_PER_TYPE=2]
+// usage: bench_robustness DATA_FOLDER MODELS_FOLDER [CSV] [TEETH_PER_TYPE=2] [FACTOR]
 
 #include "atlas/completion_sample.hpp"
 #include "atlas/scanner_mesh.hpp"
@@ -195,7 +195,7 @@ void write(std::FILE* file, const Factor& factor, const std::vector<Step>& steps
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    fmt::print(stderr, "usage: bench_robustness DATA_FOLDER MODELS_FOLDER [CSV] [TEETH_PER_TYPE=2]\n");
+    fmt::print(stderr, "usage: bench_robustness DATA_FOLDER MODELS_FOLDER [CSV] [TEETH_PER_TYPE=2] [FACTOR]\n");
     return 2;
   }
   try {
@@ -204,6 +204,7 @@ int main(int argc, char** argv) {
     if (argc > 3 && csv == nullptr) throw InputError(std::string(argv[3]) + " cannot be written.");
     if (csv != nullptr) fmt::print(csv, "factor,value,predictor,teeth,root_length_mm,root_chamfer_mm,f_score\n");
     for (const Factor& factor : factors()) {
+      if (argc > 5 && factor.name != argv[5]) continue;
       std::vector<Step> steps;
       for (const double value : factor.steps) steps.push_back(trial.take(factor, value));
       print(factor, steps);

@@ -136,9 +136,9 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
     sample.root_axes.push_back(sample.frame.direction_to_canonical(axis));
   sample.growth_axis = sample.frame.direction_to_canonical(tooth.growth_axis);
   const double error = options.form_axis_error_degrees * std::numbers::pi / 180 * (lost ? 3 : 1);
-  const Eigen::Vector3d axis =
-      sample.frame.direction_to_canonical(families.crown_axes[static_cast<std::size_t>(sample.type)]);
-  sample.form_axis = axis.head<2>() + Eigen::Vector2d(random.normal(0, error), random.normal(0, error));
+  const double error_x = random.normal(0, error), error_y = random.normal(0, error);
+  sample.form_axis =
+      sample.frame.direction_to_canonical(tooth.crown_axis).head<2>() + Eigen::Vector2d(error_x, error_y);
   sample.junction = tooth.junction;
   sample.gum_line = crop.line;
   sample.furcation_z = tooth.furcation_z;

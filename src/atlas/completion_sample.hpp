@@ -24,8 +24,10 @@ struct CompletionSampleOptions {
   double skirt_probability = 0.2;         ///< share of crowns with remains of the gum along the cut, 0..1
   double skirt_mm = 0.9;                  ///< their largest width, >= 0
   double lost_turn_share = 0.05;          ///< share of crowns that are turned anyhow about the growth axis, 0..1
-  double rotation_jitter_radians = 0.15;  ///< half width of the error of the rotation about the growth axis, >= 0
-  double form_axis_error_degrees = 4.0;   ///< standard deviation of the error of `form_axis` along x and y, >= 0
+  double rotation_jitter_radians = 0.15;  ///< half width of the error of the rotation about the growth axis, >= 0;
+                                          ///< beside crowns that are turned anyhow
+  double form_axis_error_degrees = 4.0;   ///< standard deviation of the error of `form_axis` along x and y, >= 0, as
+                                          ///< bench_atlas finds it; three times as much where the turn is lost
 };
 
 /// One training pair: what inference would see of a crown, and the tooth it belongs to.
@@ -58,9 +60,10 @@ struct CompletionSample {
 
 /// Makes training sample number `seed`: a random tooth of a random type, cropped and disturbed like a scan.
 /// The frame comes from the cropped crown alone, as at inference; its rotation about z is the generator's own plus a
-/// jitter that stands for the error of registration. Depends on the seed and options alone, so that any thread may make
-/// any sample; seeds below `validation_seed_offset` are for training, the others for validation.
-/// Throws NoResultError if no sound tooth came out of 20 draws (not seen in practice), UsageError for bad options.
+/// jitter that stands for the error of registration, or any rotation where the registration is lost. Depends on the
+/// seed and options alone, so that any thread may make any sample; seeds below `validation_seed_offset` are for
+/// training, the others for validation. Throws NoResultError if no sound tooth came out of 20 draws (not seen in
+/// practice), UsageError for bad options.
 CompletionSample make_completion_sample(const ToothFamilies& families, std::uint64_t seed,
                                         const CompletionSampleOptions& options = {});
 

@@ -12,6 +12,7 @@
 #include "rhizodont/io.hpp"
 
 #include <tbb/parallel_for.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cctype>
@@ -131,10 +132,15 @@ void measure_turns(ToothFamilies& families) {
     MeanCrown mean;
     for (const Point& p : samples.points) mean.crown.points.push_back(upright.to_canonical(p));
     mean.crown.normals = samples.normals;
-    const Eigen::Matrix3d r = canonical_frame(borrowed, fdi_of_type(loan.type, false), mean).frame.rotation;
+    const CrownFrame found = canonical_frame(borrowed, fdi_of_type(loan.type, false), mean);
+    const Eigen::Matrix3d& r = found.frame.rotation;
     loan.turn = -std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
+    Eigen::Vector3d up = found.frame.direction_to_world(found.form_direction());
     // Molars also fit the wrong way round; in the arch neighbours stand alike.
-    if (std::abs(loan.turn) > 0.6) loan.turn = 0;
+    if (std::abs(loan.turn) > 0.6) loan.turn = 0, up = Eigen::Vector3d::UnitZ();
+    loan.crown_axis = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ().eval(), up) *
+                      (Eigen::AngleAxisd(loan.turn, Eigen::Vector3d::UnitZ()) *
+                       families.crown_axes[static_cast<std::size_t>(loan.type)]);
   });
 }
 
@@ -275,10 +281,13 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
     if (loaded(loan.type) && loaded(loan.from)) families.loans.push_back(loan);
   }
   CrownModelLoader(families, folder / "crowns" / "ssm", options.crown_modes, buccal).load(wanted);
-  measure_turns(families);
+  families.crown_axes.fill(Eigen::Vector3d::UnitZ());
   tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
-    families.crown_axes[static_cast<std::size_t>(wanted[i])] = growth_axis(mean_crown(mean_tooth(families, wanted[i])));
+    const SyntheticTooth mean = mean_tooth(families, wanted[i]);
+    families.crown_axes[static_cast<std::size_t>(wanted[i])] =
+        Eigen::AngleAxisd(-mean.crown_turn, Eigen::Vector3d::UnitZ()) * growth_axis(mean_crown(mean));
   });
+  measure_turns(families);
   return families;
 }
 

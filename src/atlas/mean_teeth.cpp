@@ -10,6 +10,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <utility>
+
 namespace rhizodont {
 namespace {
 

@@ -13,6 +13,8 @@
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -140,6 +142,7 @@ SyntheticTooth draw_tooth(const ToothFamilies& families, int type, const Templat
   }
   tooth.crown_turn =
       loan.turn + crown_turn(loan.crown.empty() ? source.mesh.vertices : loan.crown, tooth.mesh.vertices, tooth.crown);
+  tooth.crown_axis = Eigen::AngleAxisd(tooth.crown_turn - loan.turn, Eigen::Vector3d::UnitZ()) * loan.crown_axis;
   mark_crown(tooth, variation, random);
   tooth.junction = shaped_junction(source.junction, shape);
   measure_roots(tooth, source.roots.size());
@@ -169,7 +172,7 @@ SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint
                               const ToothVariation& variation) {
   require_type(families, type);
   RandomStream random(seed, static_cast<std::uint64_t>(type) + 1);
-  const TemplateLoan own{type, type, 1, 0, {}};
+  const TemplateLoan own{type, type, 1, 0, {}, families.crown_axes[static_cast<std::size_t>(type)]};
   for (int draw = 0; draw < 20; ++draw) {
     const TemplateLoan& loan = choose_template(type, random, families, own);
     const FamilyTemplate& source = families.templates[static_cast<std::size_t>(loan.from)];
@@ -182,7 +185,8 @@ SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint
 SyntheticTooth mean_tooth(const ToothFamilies& families, int type) {
   require_type(families, type);
   RandomStream unused(0);
-  return draw_tooth(families, type, {type, type, 1, 0, {}}, no_variation(), unused);
+  const TemplateLoan own{type, type, 1, 0, {}, families.crown_axes[static_cast<std::size_t>(type)]};
+  return draw_tooth(families, type, own, no_variation(), unused);
 }
 
 }  // namespace rhizodont

@@ -60,6 +60,8 @@ struct TemplateLoan {
   double turn = 0;         ///< rotation about z (radians) that `crown` has against the type's own
   /// The borrowed template's vertices with its crown in the form of the type's mean, as far as there are models of it.
   std::vector<Point> crown = {};
+  /// Growth axis of the type's mean crown where it lies on `crown`, unit.
+  Eigen::Vector3d crown_axis{0, 0, 1};
 };
 
 /// A statistical crown model on the template that a type is grown from.
@@ -79,7 +81,7 @@ struct ToothFamilies {
   std::vector<TemplateLoan> loans;
   /// Of left and right crowns; none where the models' folder is missing. Third molars borrow those of second molars.
   std::vector<FamilyCrownModel> crown_models;
-  /// Growth axis of each type's mean crown (mean_crown), unit, in the frame of its template.
+  /// Growth axis of each loaded type's mean crown (mean_crown), unit, in the frame of its template, not turned.
   std::array<Eigen::Vector3d, tooth_type_count> crown_axes;
 };
 
@@ -94,7 +96,8 @@ struct FamilyLoadOptions {
 /// folder/anatomy.csv, and finds axes, junction, roots, apices and furcations. Takes some seconds.
 /// If there is a folder/crowns/ssm with crown_ssm_FDI.safetensors (x1-x7 of all quadrants; see CrownShapeModel), these
 /// are registered to the templates.
-/// Throws InputError if a file is missing or damaged or a template is not a closed surface of genus 0.
+/// Throws InputError if a file is missing or damaged or a template is not a closed surface of genus 0, NoResultError if
+/// a type's mean crown cannot be cut from its template.
 ToothFamilies load_tooth_families(const std::filesystem::path& folder, const FamilyLoadOptions& options = {});
 
 /// How generated teeth vary; standard deviations unless said otherwise. 0 switches a variation off.
@@ -137,9 +140,10 @@ struct SyntheticTooth {
   std::vector<int> root;                 ///< per vertex: root below its branching, else -1
   Eigen::Vector3d growth_axis{0, 0, 1};  ///< root to crown
   JunctionHeight junction;               ///< height of the cemento-enamel junction
-  double crown_turn = 0;      ///< rotation about z (radians) that the crown has against the type's mean crown
-  bool own_template = true;   ///< grown from the type's own template: same triangles and places as its others
-  std::vector<Point> apices;  ///< tips of the roots
+  double crown_turn = 0;                ///< rotation about z (radians) that the crown has against the type's mean crown
+  Eigen::Vector3d crown_axis{0, 0, 1};  ///< unit: growth axis of the type's mean crown where it lies on this one
+  bool own_template = true;             ///< grown from the type's own template: same triangles and places as its others
+  std::vector<Point> apices;            ///< tips of the roots
   std::vector<Eigen::Vector3d> root_axes;  ///< unit, from each root's tip to its middle where it branches off
   double crown_height = 0;                 ///< top above the junction's mean height
   double root_length = 0;                  ///< junction's mean height to the deepest apex along z

@@ -5,6 +5,8 @@
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace rhizodont {
@@ -23,6 +25,10 @@ Eigen::Vector3d CanonicalFrame::direction_to_world(const Eigen::Vector3d& canoni
   Eigen::Vector3d turned = canonical;
   if (mirrored) turned.x() = -turned.x();
   return rotation.transpose() * turned;
+}
+
+Eigen::Vector3d CrownFrame::form_direction() const {
+  return {form_axis.x(), form_axis.y(), std::sqrt(std::max(0.0, 1 - form_axis.squaredNorm()))};
 }
 
 int tooth_type_of_fdi(int fdi) {

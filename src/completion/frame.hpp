@@ -71,7 +71,7 @@ struct RigidFit {
 struct RegistrationOptions {
   int start_angles = 36;          ///< starting rotations about the axis, >= 4
   int refined_starts = 4;         ///< how many of the best starts are refined, 1..start_angles
-  int iterations = 20;            ///< refinements per start, >= 1
+  int iterations = 20;            ///< refinements per start at most, >= 1; fewer where nothing moves any more
   double trim = 0.95;             ///< share of the closest pairs that count, 0.3..1
   double normal_weight_mm = 2.5;  ///< millimetres that a difference of 1 between unit normals counts for, >= 0
 };
@@ -81,8 +81,12 @@ struct CrownFrame {
   CanonicalFrame frame;    ///< z = growth_axis, centre = area_centroid; rotation about z from the registration
   double residual_mm = 0;  ///< as in RigidFit
   /// x and y, canonical, of the mean crown's growth axis where it lies on this crown: how far the crown's form leans
-  /// against its border. A gum line leans with the gum, a cut across the tooth's long axis with the root.
+  /// against its border. A gum line leans with the gum, a cut across the tooth's long axis with the root. At most 0.5
+  /// long: what seems to lean by more than 30 degrees was laid badly.
   Eigen::Vector2d form_axis = Eigen::Vector2d::Zero();
+
+  /// That axis as a unit vector, canonical.
+  Eigen::Vector3d form_direction() const;
 };
 
 /// Canonical pose of an open crown with a known FDI number: axis and centre from the crown itself, rotation about the

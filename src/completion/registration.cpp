@@ -111,11 +111,9 @@ Nearest nearest(const Features& from, const Features& to) {
       for (std::size_t k = 0; k < 6; ++k) sum += (row[k][j] - at[k]) * (row[k][j] - at[k]);
       squared[j] = sum;
     }
-    // The least first and then where it is: both loops go several numbers at a time.
-    float least = squared[0];
-    for (std::size_t j = 1; j < count; ++j) least = squared[j] < least ? squared[j] : least;
-    result.squared.push_back(static_cast<double>(least));
-    result.index.push_back(std::find(squared.begin(), squared.end(), least) - squared.begin());
+    const auto best = std::min_element(squared.begin(), squared.end());
+    result.squared.push_back(static_cast<double>(*best));
+    result.index.push_back(best - squared.begin());
   }
   return result;
 }
@@ -314,7 +312,11 @@ CrownFrame frame_from(const OrientedPoints& points, const Eigen::Vector3d& axis,
   CrownFrame result;
   const Eigen::Matrix3d turn = about_z(std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1)));
   result.frame = turned_frame(upright, turn);
-  result.form_axis = (turn * r.transpose()).col(2).head<2>();
+  constexpr double longest = 0.5;
+  const Eigen::Vector3d up = (turn * r.transpose()).col(2);
+  const double length = up.head<2>().norm();
+  // What was laid upside down tells nothing.
+  if (up.z() > 0) result.form_axis = std::min(1.0, longest / std::max(length, longest)) * up.head<2>();
   result.residual_mm = found.residual / found.at.scale;
   return result;
 }

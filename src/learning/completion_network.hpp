@@ -36,10 +36,9 @@ class CompletionNetwork {
   /// at least `input_points()` of them; more are thinned by farthest-point sampling. `type` is 0..15 or `unknown_type`;
   /// `form_axis`: x and y of the axis of the crown's form, where z is that of its border (TrainingSample::form_axis).
   /// The result depends neither on the order of the points nor on the number of threads.
-  /// Throws InputError for too few, non-finite or coinciding points or points far outside of the pose's cube (|x| > 4),
-  /// UsageError for another type.
-  CompletedPoints complete(std::span<const Eigen::Vector3f> crown, int type,
-                           const Eigen::Vector2f& form_axis = Eigen::Vector2f::Zero()) const;
+  /// Throws InputError for an axis that is not a number and for too few, non-finite or coinciding points or points far
+  /// outside of the pose's cube (|x| > 4), UsageError for another type.
+  CompletedPoints complete(std::span<const Eigen::Vector3f> crown, int type, const Eigen::Vector2f& form_axis) const;
 
   /// Number of crown points that the network looks at (1024 in the shipped weights).
   int input_points() const;

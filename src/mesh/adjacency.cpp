@@ -119,6 +119,7 @@ double edge_bend(const TriangleMesh& mesh, const EdgeTable& table, std::size_t e
   const int g = table.half_edges[at], h = table.half_edges[at + 1];
   const Eigen::Vector3d first = triangle_normal(mesh, static_cast<std::size_t>(half_edge_triangle(g)));
   const Eigen::Vector3d second = triangle_normal(mesh, static_cast<std::size_t>(half_edge_triangle(h)));
+  if (first.isZero() || second.isZero()) return 0;
   const Eigen::Vector3d into_first = (half_edge_from(mesh, g) == a ? 1 : -1) * first.cross(along).normalized();
   return std::atan2(-second.dot(into_first), second.dot(first));
 }

@@ -52,7 +52,7 @@ struct VertexTriangles {
 VertexTriangles vertex_triangles(const TriangleMesh& mesh);
 
 /// How much the surface is bent at an edge of the table, radians, -pi to pi: positive outwards (a ridge), negative
-/// inwards (a crease), 0 where the edge has not just two triangles.
+/// inwards (a crease), 0 where the edge has not just two triangles or one of them has no area.
 double edge_bend(const TriangleMesh& mesh, const EdgeTable& table, std::size_t edge);
 
 /// The closed loops of border vertices; in each, consecutive vertices (and last to first) are a half-edge of the

@@ -3,7 +3,7 @@
 
 // "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", section 3.2 and figure 2: spikes are
 //   part of what is dropped as skirt. The sum of a vertex's corners is 2 pi less its Gauss curvature, which needs no
-//   normals: those of a folded flap say nothing.
+//   normals: those of a folded flap say nothing of the tooth, but their difference says that it is folded.
 #include "skirt/spikes.hpp"
 
 #include "mesh/adjacency.hpp"
@@ -47,8 +47,7 @@ std::vector<bool> triangles_without_spikes(const TriangleMesh& crown, const Spik
   if (!(options.tip >= 0 && options.tip <= 360) || !(options.flap >= 0 && options.flap <= 180) ||
       !(options.fin > 0 && options.fin <= 180) || options.rounds < 1)
     throw UsageError(
-        "The tip of a spike has 0 to 360 degrees, that of a flap and the edge of a fin 0 to 180, and there is at least "
-        "one "
+        "The tip of a spike has 0 to 360 degrees, a flap's and the edge of a fin 0 to 180; there is at least one "
         "round.");
   std::vector<bool> keep(crown.triangles.size(), true);
   for (int round = 0; round < options.rounds; ++round) {

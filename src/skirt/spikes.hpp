@@ -21,7 +21,7 @@ struct SpikeOptions {
 
 /// Per triangle whether it stays once the tips of spikes, of flaps and of fins are taken off: thin things of a few
 /// triangles that a scan shows where the camera saw past the tooth, too small for a network that looks at the surface
-/// at large. No vertex of the clean crowns that the project knows is so pointed, cusps and cut borders included
+/// at large. Hardly a vertex of the clean crowns that the project knows is so pointed, cusps and cut borders included
 /// (docs/skirt.md). A vertex of no triangle does not matter. Throws UsageError for options out of range.
 std::vector<bool> triangles_without_spikes(const TriangleMesh& crown, const SpikeOptions& options = {});
 

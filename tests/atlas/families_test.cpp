@@ -314,6 +314,37 @@ TEST_F(Families, samplesAreInCanonicalPose) {
   }
 }
 
+TEST_F(Families, axisOfTheFormIsWhatLayingTheMeanCrownFinds) {
+  const ToothFamilies& families = all_families();
+  const Atlas atlas = make_atlas(families);
+  CompletionSampleOptions options;
+  options.type = 13;
+  options.rotation_jitter_radians = options.lost_turn_share = options.form_axis_error_degrees = 0;
+  options.scanner_noise_mm = options.gap_probability = options.skirt_probability = options.paper_crop_share = 0;
+  Eigen::Vector2d product = Eigen::Vector2d::Zero(), square = product, rest = product;
+  constexpr int count = 24;
+  for (std::uint64_t seed = 0; seed < count; ++seed) {
+    // The sample's own crown: the same draws in the same order.
+    RandomStream random(seed, 100);
+    random.index(tooth_type_count);
+    const SyntheticTooth tooth = generate_tooth(families, options.type, random.bits());
+    const TriangleMesh crown = draw_cropped_crown(tooth, 0, 0, random).mesh;
+    const CrownFrame found = canonical_frame(crown, 36, atlas.types[13]);
+    const CompletionSample sample = make_completion_sample(families, seed, options);
+    ASSERT_LT((found.frame.centre - sample.frame.centre).norm(), 1e-9);
+    const Eigen::Matrix3d turn = found.frame.rotation * sample.frame.rotation.transpose();
+    if (turn(0, 0) < 0.8) continue;  // laid the wrong way round
+    const Eigen::Vector2d error = found.form_axis - sample.form_axis;
+    product += found.form_axis.cwiseProduct(sample.form_axis);
+    square += sample.form_axis.cwiseAbs2();
+    rest += error.cwiseAbs2();
+  }
+  for (const int i : {0, 1}) {
+    EXPECT_NEAR(product[i] / square[i], 1, 0.5) << "slope along " << i;
+    EXPECT_LT(rest[i], square[i]) << "tells more than nothing along " << i;
+  }
+}
+
 TEST_F(Families, samplesRepeatAndDiffer) {
   const ToothFamilies& families = all_families();
   CompletionSampleOptions options;
@@ -329,6 +360,9 @@ TEST_F(Families, samplesRepeatAndDiffer) {
   options.type = 16;
   EXPECT_THROW(make_completion_sample(families, 1, options), UsageError);
   options.type = 13;
+  options.form_axis_error_degrees = -1;
+  EXPECT_THROW(make_completion_sample(families, 1, options), UsageError);
+  options.form_axis_error_degrees = 4;
   options.paper_crop_share = 2;
   EXPECT_THROW(make_completion_sample(families, 1, options), UsageError);
 }

@@ -88,6 +88,19 @@ TEST(AdaPoinTr, GradientReachesEveryParameter) {
   EXPECT_GT(std::get<0>(network->patches.grad().abs().flatten(1).max(1)).min().item<double>(), 0);
 }
 
+TEST(AdaPoinTr, BatchesHaveTheAxesOfTheirSamples) {
+  const SampleProvider provider = [](std::uint64_t index) {
+    TrainingSample sample = testing::tiny_sample(index);
+    sample.form_axis = {0.01F * static_cast<float>(index), -0.1F};
+    return sample;
+  };
+  const TrainingBatch batch = make_training_batch(provider, tiny_layouts(), 5, 3, testing::tiny_options(), true);
+  for (int b = 0; b < 3; ++b) {
+    EXPECT_FLOAT_EQ(batch.crowns.form_axes[b][0].item<float>(), 0.01F * static_cast<float>(5 + b));
+    EXPECT_FLOAT_EQ(batch.crowns.form_axes[b][1].item<float>(), -0.1F);
+  }
+}
+
 TEST(AdaPoinTr, AxisOfTheFormMovesItsOwnCrownAlone) {
   torch::manual_seed(6);
   AdaPoinTr network(testing::tiny_shape());

@@ -18,6 +18,8 @@
 namespace rhizodont {
 namespace {
 
+const Eigen::Vector2f upright(0, 0);
+
 class Training : public ::testing::Test {
  protected:
   std::filesystem::path folder_ =
@@ -236,21 +238,21 @@ TEST_F(Training, NetworkIsRepeatableAndIgnoresOrder) {
   EXPECT_EQ(network.output_points(), 96);
   EXPECT_EQ(network.metadata().at("note"), "a test");
   std::vector<Eigen::Vector3f> crown = testing::capsule(77, 90, 10).input;
-  const CompletedPoints first = network.complete(crown, 3);
+  const CompletedPoints first = network.complete(crown, 3, upright);
   ASSERT_EQ(first.points.size(), 96U);
   ASSERT_EQ(first.normals.size(), 96U);
   for (const Eigen::Vector3f& n : first.normals) EXPECT_NEAR(n.norm(), 1, 1e-5);
   std::shuffle(crown.begin(), crown.end(), std::mt19937(1));
-  EXPECT_EQ(network.complete(crown, 3).points, first.points);
+  EXPECT_EQ(network.complete(crown, 3, upright).points, first.points);
   std::vector<CompletedPoints> elsewhere(3);
   std::vector<std::thread> threads;
-  for (auto& result : elsewhere) threads.emplace_back([&] { result = network.complete(crown, 3); });
+  for (auto& result : elsewhere) threads.emplace_back([&] { result = network.complete(crown, 3, upright); });
   for (auto& thread : threads) thread.join();
   for (const auto& result : elsewhere) {
     EXPECT_EQ(result.points, first.points);
     EXPECT_EQ(result.normals, first.normals);
   }
-  EXPECT_NE(network.complete(crown, unknown_type).points, first.points);
+  EXPECT_NE(network.complete(crown, unknown_type, upright).points, first.points);
 }
 
 TEST_F(Training, NetworkRefusesBadCrowns) {
@@ -258,18 +260,18 @@ TEST_F(Training, NetworkRefusesBadCrowns) {
   options.samples = 4;
   const CompletionNetwork network = short_run(options);
   const std::vector<Eigen::Vector3f> crown = testing::capsule(78, 64, 10).input;
-  EXPECT_NO_THROW(network.complete(crown, 0));
-  EXPECT_THROW(network.complete(crown, 17), UsageError);
-  EXPECT_THROW(network.complete(crown, -1), UsageError);
+  EXPECT_NO_THROW(network.complete(crown, 0, upright));
+  EXPECT_THROW(network.complete(crown, 17, upright), UsageError);
+  EXPECT_THROW(network.complete(crown, -1, upright), UsageError);
   EXPECT_THROW(network.complete(crown, 0, Eigen::Vector2f(0, std::nanf(""))), InputError);
-  EXPECT_THROW(network.complete(std::span(crown).first(63), 0), InputError);
+  EXPECT_THROW(network.complete(std::span(crown).first(63), 0, upright), InputError);
   auto bad = crown;
   bad[5].y() = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THROW(network.complete(bad, 0), InputError);
+  EXPECT_THROW(network.complete(bad, 0, upright), InputError);
   bad = crown;
   bad[5].y() = 12;
-  EXPECT_THROW(network.complete(bad, 0), InputError);
-  EXPECT_THROW(network.complete(std::vector<Eigen::Vector3f>(64, Eigen::Vector3f(1, 1, 1)), 0), InputError);
+  EXPECT_THROW(network.complete(bad, 0, upright), InputError);
+  EXPECT_THROW(network.complete(std::vector<Eigen::Vector3f>(64, Eigen::Vector3f(1, 1, 1)), 0, upright), InputError);
 }
 
 TEST_F(Training, NetworkRefusesOtherWeightFiles) {

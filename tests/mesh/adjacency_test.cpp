@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numbers>
 #include <set>
 
 namespace rhizodont {
@@ -200,9 +201,14 @@ TEST(EdgeBend, RightAnglesOfACubeAndFlatDiagonals) {
     EXPECT_EQ(bent, 12);
     mesh = flipped(mesh);  // seen from inside every edge is a crease
   }
-  const TriangleMesh open{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
-  const EdgeTable table = edge_table(open);
-  for (std::size_t e = 0; e < table.size(); ++e) EXPECT_EQ(edge_bend(open, table, e), 0) << "border";
+  // A border; an edge of three triangles; a triangle without area beside one that looks to negative x, y and z.
+  const std::vector<Point> points{{0, 0, 0}, {1, 0, -1}, {0, 1, -1}, {0, 0, 1}, {-1, -1, 1}, {0.5, 0, -0.5}};
+  for (const std::vector<Triangle>& triangles :
+       {std::vector<Triangle>{{0, 1, 2}}, {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, {{0, 2, 1}, {0, 1, 5}}}) {
+    const TriangleMesh flat{points, triangles};
+    const EdgeTable table = edge_table(flat);
+    for (std::size_t e = 0; e < table.size(); ++e) EXPECT_EQ(edge_bend(flat, table, e), 0);
+  }
 }
 
 }  // namespace
