@@ -100,9 +100,8 @@ it draws is no measure of recession, decay or the cemento-enamel junction.
 ## Data
 Crowns with skirts made on the fly by the project's generator (`src/atlas/skirt_sample.hpp`); no scan of a patient was
 trained on. That spikes belong among them was seen in pictures of one coarse scan's 14 crowns; results on these were looked
-at between runs, but weights and
-settings of the network were chosen by figures on generated crowns; how sharp a fin must be to go (`src/skirt/spikes.hpp`)
-was chosen on that scan. The generator draws on "Permanent Teeth", University of Dundee School of Dentistry (E. McDougall, A. Mason,
+at between runs, but weights and settings of the network were chosen by figures on generated crowns; how sharp a fin must be to
+go (`src/skirt/spikes.hpp`) was chosen on that scan. The generator draws on "Permanent Teeth", University of Dundee School of Dentistry (E. McDougall, A. Mason,
 M. Roughley), CC BY 4.0, and on the statistical crown models of Chen Y. et al., "Automatic 3D Teeth Reconstruction from
 Five Intra-oral Photos Using Parametric Teeth Model", 2023 (MIT). The weights are derived from these: keep the attribution.
 

@@ -5,13 +5,13 @@
 #include "atlas/completion_sample.hpp"
 #include "atlas/crown_crop.hpp"
 #include "atlas/mean_teeth.hpp"
+#include "common/stopwatch.hpp"
 
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -29,19 +29,19 @@ struct Outcome {
   Eigen::Vector2d measured = Eigen::Vector2d::Zero();  ///< the same as registered
 };
 
-Outcome register_generated(const ToothFamilies& families, const Atlas& atlas, int type, std::uint64_t number,
-                           const RegistrationOptions& options) {
+Outcome register_generated(const ToothFamilies& families, const Atlas& atlas, int type, std::uint64_t number) {
   const SyntheticTooth tooth = generate_tooth(families, type, (std::uint64_t{1} << 35) + number);
   RandomStream random(number, 300);
   const CompletionSampleOptions samples;
   CroppedCrown crop = draw_cropped_crown(tooth, samples.paper_crop_share, samples.gap_probability, random);
   if (random.chance(samples.skirt_probability)) add_skirt_remains(crop.mesh, samples.skirt_mm, random);
   const CanonicalFrame truth = frame_of_crop(crop.mesh, -tooth.crown_turn);
-  const auto start = std::chrono::steady_clock::now();
-  const CrownFrame found =
-      canonical_frame(crop.mesh, fdi_of_type(type, false), atlas.types[static_cast<std::size_t>(type)], options);
+  CrownFrame found;
+  const auto lay = [&] {
+    found = canonical_frame(crop.mesh, fdi_of_type(type, false), atlas.types[static_cast<std::size_t>(type)]);
+  };
   Outcome outcome;
-  outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  outcome.seconds = median_seconds(lay, 1);
   const Eigen::Matrix3d r = found.frame.rotation * truth.rotation.transpose();
   outcome.turn = std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
   outcome.leans = found.frame.direction_to_canonical(tooth.crown_axis).head<2>();
@@ -51,18 +51,16 @@ Outcome register_generated(const ToothFamilies& families, const Atlas& atlas, in
 
 }  // namespace
 
-void registration_table(const ToothFamilies& families, std::uint64_t count, const RegistrationOptions& options) {
+void registration_table(const ToothFamilies& families, std::uint64_t count) {
   const Atlas atlas = make_atlas(families);
   std::array<std::vector<Outcome>, tooth_type_count> outcomes;
   tbb::parallel_for(0, tooth_type_count, [&](int type) {
     auto& list = outcomes[static_cast<std::size_t>(type)];
-    for (std::uint64_t i = 0; i < count; ++i) list.push_back(register_generated(families, atlas, type, i, options));
+    for (std::uint64_t i = 0; i < count; ++i) list.push_back(register_generated(families, atlas, type, i));
   });
   fmt::print(
       "| tooth | ms | turn within 0.1 rad | over 0.5 | deviation of the form's true lean, x / y degrees | slope of the "
-      "registered "
-      "on it | bias | "
-      "deviation of the rest |\n|---|---|---|---|---|---|---|---|\n");
+      "registered on it | bias | deviation of the rest |\n|---|---|---|---|---|---|---|---|\n");
   for (int type = 0; type < tooth_type_count; ++type) {
     const auto& list = outcomes[static_cast<std::size_t>(type)];
     const auto n = static_cast<double>(list.size());

@@ -22,6 +22,11 @@
 namespace rhizodont {
 namespace {
 
+// A type's own template, as if it were borrowed from itself.
+TemplateLoan own_template(const ToothFamilies& families, int type) {
+  return {type, type, 1, 0, {}, families.crown_axes[static_cast<std::size_t>(type)]};
+}
+
 // The type's own template or a borrowed one.
 const TemplateLoan& choose_template(int type, RandomStream& random, const ToothFamilies& families,
                                     const TemplateLoan& own) {
@@ -172,7 +177,7 @@ SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint
                               const ToothVariation& variation) {
   require_type(families, type);
   RandomStream random(seed, static_cast<std::uint64_t>(type) + 1);
-  const TemplateLoan own{type, type, 1, 0, {}, families.crown_axes[static_cast<std::size_t>(type)]};
+  const TemplateLoan own = own_template(families, type);
   for (int draw = 0; draw < 20; ++draw) {
     const TemplateLoan& loan = choose_template(type, random, families, own);
     const FamilyTemplate& source = families.templates[static_cast<std::size_t>(loan.from)];
@@ -185,7 +190,7 @@ SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint
 SyntheticTooth mean_tooth(const ToothFamilies& families, int type) {
   require_type(families, type);
   RandomStream unused(0);
-  const TemplateLoan own{type, type, 1, 0, {}, families.crown_axes[static_cast<std::size_t>(type)]};
+  const TemplateLoan own = own_template(families, type);
   return draw_tooth(families, type, own, no_variation(), unused);
 }
 

@@ -316,7 +316,7 @@ CrownFrame frame_from(const OrientedPoints& points, const Eigen::Vector3d& axis,
   const Eigen::Vector3d up = (turn * r.transpose()).col(2);
   const double length = up.head<2>().norm();
   // What was laid upside down tells nothing.
-  if (up.z() > 0) result.form_axis = std::min(1.0, longest / std::max(length, longest)) * up.head<2>();
+  if (up.z() > 0) result.form_axis = longest / std::max(length, longest) * up.head<2>();
   result.residual_mm = found.residual / found.at.scale;
   return result;
 }

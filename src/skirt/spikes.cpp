@@ -34,8 +34,10 @@ std::vector<bool> tips(const TriangleMesh& mesh, const SpikeOptions& options) {
   for (std::size_t v = 0; v < sum.size(); ++v)
     tip.push_back(sum[v] * degrees < (border[v] ? options.flap : options.tip));
   for (std::size_t e = 0; e < table.size(); ++e) {
+    const auto [a, b] = table.vertices[e];
+    if (!border[static_cast<std::size_t>(a)] && !border[static_cast<std::size_t>(b)]) continue;
     if (std::abs(edge_bend(mesh, table, e)) * degrees <= options.fin) continue;
-    for (const int v : table.vertices[e])
+    for (const int v : {a, b})
       if (border[static_cast<std::size_t>(v)]) tip[static_cast<std::size_t>(v)] = true;
   }
   return tip;
