@@ -16,6 +16,7 @@ enum class ErrorCode : int {
   unusable_input = 3,  ///< the file or the mesh in it cannot be used
   no_result = 4,       ///< no result was found that keeps the promises
   internal = 5,        ///< a fault of the program
+  unwritable = 6,      ///< a result cannot be written where it should go
 };
 
 /// Base of all exceptions that the library throws.
@@ -45,6 +46,12 @@ class InputError : public Error {
  public:
   explicit InputError(const std::string& sentence, std::vector<std::int64_t> elements = {})
       : Error(ErrorCode::unusable_input, sentence, std::move(elements)) {}
+};
+
+/// A file cannot be written: no room, no right, no such place. What stood there before stands there still.
+class OutputError : public Error {
+ public:
+  explicit OutputError(const std::string& sentence) : Error(ErrorCode::unwritable, sentence) {}
 };
 
 /// The input was understood, but no result keeps the promises.

@@ -41,6 +41,11 @@ struct MeshFile {
   /// Triangles of the file left out because two corners are the same vertex (STL: the same bits); by their place in the
   /// file.
   std::vector<std::int64_t> dropped_triangles;
+  /// Per vertex its number in the file, from 0: the first of those that were merged because their bits are equal. Empty
+  /// where the numbers are the same, and for STL, whose files number no vertices.
+  std::vector<int> file_vertices = {};
+  /// What reading found and mended or passed over, a sentence each, for the user. Not written.
+  std::vector<std::string> notes = {};
 };
 
 /// True if every coordinate, rounded to float, is still the same number.
