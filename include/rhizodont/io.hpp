@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rhizodont {
@@ -58,6 +59,10 @@ bool coordinates_fit_float(const TriangleMesh& mesh);
 /// cut off, holds no triangle, a coordinate that is not a number, or an index that is not a vertex; UsageError for
 /// another extension.
 MeshFile load_mesh(const std::filesystem::path& path);
+
+/// As `load_mesh`, of bytes that are at hand, such as those of standard input. The hint is a file's name, its ending or
+/// a format's name ("crown.stl", ".stl", "stl"). Errors do not name the file.
+MeshFile read_mesh(std::string_view bytes, const std::filesystem::path& name_or_format_hint);
 
 /// Writes .ply (binary), .stl (binary), .obj or .glb by extension. Coordinates that all fit float are written as float
 /// bits, otherwise as double (PLY) or with all digits (OBJ). The file appears complete or not at all: it is written

@@ -32,16 +32,6 @@ std::string lower_extension(const fs::path& path) {
   return extension;
 }
 
-std::string read_bytes(const fs::path& path) {
-  if (fs::is_directory(path)) throw InputError(fmt::format("{}: this is a folder, not a file", path.string()));
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("{}: the file cannot be opened: {}", path.string(), std::strerror(errno)));
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw InputError(fmt::format("{}: the file cannot be read", path.string()));
-  return bytes;
-}
-
-using Reader = MeshFile (*)(std::string_view);
 using Writer = std::string (*)(const MeshFile&);
 
 template <class Function>
@@ -57,19 +47,6 @@ Writer writer_for(const fs::path& path) {
   static const std::map<std::string, Writer> writers{
       {".ply", write_ply}, {".stl", write_stl}, {".obj", write_obj}, {".glb", write_glb}};
   return function_for(path, writers, "written");
-}
-
-void take_out_repeated_corners(MeshFile& file) {
-  std::vector<Triangle>& triangles = file.mesh.triangles;
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const Triangle c = triangles[t];
-    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])
-      file.dropped_triangles.push_back(static_cast<std::int64_t>(t));
-    else
-      triangles[kept++] = c;
-  }
-  triangles.resize(kept);
 }
 
 bool holds_exactly(const VertexAttribute& attribute) {
@@ -147,19 +124,6 @@ bool coordinates_fit_float(const TriangleMesh& mesh) {
                      [](const Point& p) { return is_float(p.x()) && is_float(p.y()) && is_float(p.z()); });
 }
 
-void finish_reading(MeshFile& file) {
-  if (file.mesh.triangles.empty()) throw InputError("the file holds no triangles");
-  if (file.mesh.vertices.size() > static_cast<std::size_t>(INT32_MAX) ||
-      file.mesh.triangles.size() > static_cast<std::size_t>(INT32_MAX) / 3)
-    throw InputError("the mesh is too large");
-  require_valid_indices(file.mesh);
-  require_finite(file.mesh.vertices);
-  take_out_repeated_corners(file);
-  if (file.mesh.triangles.empty())
-    throw InputError("the file holds no triangle with three different corners", file.dropped_triangles);
-  file.coordinates_fit_float = coordinates_fit_float(file.mesh);
-}
-
 void require_writable(const MeshFile& file) {
   if (file.mesh.triangles.empty()) throw InputError("a mesh without triangles is not written");
   require_valid_indices(file.mesh);
@@ -175,21 +139,6 @@ void require_writable(const MeshFile& file) {
   }
   for (const std::string& comment : file.comments)
     if (comment.find_first_of("\r\n") != std::string::npos) throw InputError("a comment in a file is one line");
-}
-
-MeshFile load_mesh(const std::filesystem::path& path) {
-  static const std::map<std::string, Reader> readers{
-      {".stl", read_stl}, {".ply", read_ply}, {".obj", read_obj}, {".off", read_off}, {".vtp", read_vtp}};
-  const Reader reader = function_for(path, readers, "read");
-  const std::string bytes = read_bytes(path);
-  try {
-    if (bytes.empty()) throw InputError("the file is empty");
-    MeshFile file = reader(bytes);
-    finish_reading(file);
-    return file;
-  } catch (const InputError& error) {
-    throw InputError(path.string() + ": " + error.what(), error.elements());
-  }
 }
 
 void require_savable(const std::filesystem::path& path) {
