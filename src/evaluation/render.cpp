@@ -80,7 +80,6 @@ Eigen::Vector2f half_extent(const Scene& scene) {
 }
 
 struct Sample {
-  float depth = -std::numeric_limits<float>::infinity();  // mm, larger = nearer
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();
   Colour colour{};
   float line = 0;  // 1 on an edge of the wireframe
@@ -96,26 +95,43 @@ class Tile {
         probes_(make_probes(samples_per_mm)),
         wireframe_(wireframe),
         line_width_(line_width),
-        samples_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {}
+        depths_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), nothing),
+        samples_(depths_.size()) {}
 
   void draw(const Scene& scene) {
     for (std::size_t t = 0; t < scene.mesh->triangles.size(); ++t) draw_triangle(scene, t);
   }
 
-  Colour shaded(int x, int y) const {
-    const Sample& sample = at(x, y);
-    if (!std::isfinite(sample.depth)) return background(y);
-    const float open = openness(x, y, sample);
-    Colour colour = lit(sample, open);
-    for (float& part : colour) part *= 1 - 0.75F * sample.line;
-    return colour;
+  /// Mean colour of a pixel's s x s samples. How open the surroundings are hardly differs between neighbouring samples
+  /// of one surface, and is by far the most expensive part: it is found once for all that follow at about that depth.
+  Colour pixel(int column, int row, int s) const {
+    constexpr float same_surface_mm = 0.15F;
+    Colour sum{};
+    float depth = nothing, open = 1;
+    for (int k = 0; k < s * s; ++k) {
+      const int x = column * s + k % s, y = row * s + k / s;
+      const std::size_t i = place(x, y);
+      Colour part = background(y);
+      if (depths_[i] != nothing) {
+        if (!(std::abs(depths_[i] - depth) <= same_surface_mm)) {
+          depth = depths_[i];
+          open = openness(x, y, samples_[i].normal);
+        }
+        part = lit(samples_[i], open);
+        for (float& c : part) c *= 1 - 0.75F * samples_[i].line;
+      }
+      for (std::size_t c = 0; c < 3; ++c) sum[c] += part[c];
+    }
+    for (float& c : sum) c /= static_cast<float>(s * s);
+    return sum;
   }
 
  private:
   static constexpr float reach_mm = 1.6F;  // of ambient occlusion
+  static constexpr float nothing = -std::numeric_limits<float>::infinity();
 
-  const Sample& at(int x, int y) const {
-    return samples_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+  std::size_t place(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
   }
 
   void draw_triangle(const Scene& scene, std::size_t t) {
@@ -160,25 +176,24 @@ class Tile {
   void put(const Scene& scene, std::size_t t, int x, int y, const std::array<float, 3>& weight, bool behind,
            float line) {
     const Triangle& corners = scene.mesh->triangles[t];
-    Sample sample;
-    sample.depth = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      sample.depth += weight[i] * scene.points[static_cast<std::size_t>(corners[i])].z();
+    float depth = 0;
+    for (std::size_t i = 0; i < 3; ++i) depth += weight[i] * scene.points[static_cast<std::size_t>(corners[i])].z();
+    if (depth <= depths_[place(x, y)]) return;
+    depths_[place(x, y)] = depth;
+    Sample& sample = samples_[place(x, y)];
+    sample.normal.setZero();
+    for (std::size_t i = 0; i < 3; ++i)
       sample.normal += weight[i] * scene.normals[static_cast<std::size_t>(corners[i])];
-    }
-    Sample& old =
-        samples_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
-    if (sample.depth <= old.depth) return;
     sample.normal.normalize();
     if (behind) sample.normal = -sample.normal;
     sample.behind = behind;
     sample.line = line;
     sample.colour = (*scene.colours)[scene.colours->size() == 1 ? 0 : t];
-    old = sample;
   }
 
   // Share of the half-space above a sample that its surroundings leave open, [0, 1].
-  float openness(int x, int y, const Sample& sample) const {
+  float openness(int x, int y, const Eigen::Vector3f& normal) const {
+    const float here = depths_[place(x, y)];
     const auto& directions = probes_[static_cast<std::size_t>(x * 7 + y * 3) % probes_.size()];
     float closed = 0;
     for (const auto& steps : directions) {
@@ -186,13 +201,13 @@ class Tile {
       for (const Eigen::Vector2i& step : steps) {
         const int u = x + step.x(), v = y + step.y();
         if (u < 0 || v < 0 || u >= width_ || v >= height_) continue;
-        const float depth = at(u, v).depth;
-        if (!std::isfinite(depth)) continue;
+        const float depth = depths_[place(u, v)];
+        if (depth == nothing) continue;
         const Eigen::Vector3f offset(static_cast<float>(step.x()) / scale_, static_cast<float>(-step.y()) / scale_,
-                                     depth - sample.depth);
+                                     depth - here);
         // what stands far in front hides the picture, not the light
         const float fade = 1 - std::abs(offset.z()) / (2 * reach_mm);
-        const float along = offset.dot(sample.normal);
+        const float along = offset.dot(normal);
         if (fade > 0 && along > 0) rise = std::max(rise, fade * (along / offset.norm() - 0.08F));
       }
       closed += rise;
@@ -245,7 +260,8 @@ class Tile {
   Probes probes_;
   bool wireframe_;
   float line_width_;
-  std::vector<Sample> samples_;
+  std::vector<float> depths_;    // mm, larger = nearer; apart, for openness looks at nothing else
+  std::vector<Sample> samples_;  // of meaning where there is a depth
 };
 
 std::uint8_t to_srgb(float linear) {
@@ -255,18 +271,14 @@ std::uint8_t to_srgb(float linear) {
 }
 
 void copy_to_sheet(const Tile& tile, const RenderOptions& options, int column, int row, Image& sheet) {
-  const int s = options.supersampling;
-  for (int y = 0; y < options.height; ++y)
+  tbb::parallel_for(0, options.height, [&](int y) {
     for (int x = 0; x < options.width; ++x) {
-      Colour sum{};
-      for (int k = 0; k < s * s; ++k) {
-        const Colour part = tile.shaded(x * s + k % s, y * s + k / s);
-        for (std::size_t i = 0; i < 3; ++i) sum[i] += part[i];
-      }
+      const Colour colour = tile.pixel(x, y, options.supersampling);
       const auto place = static_cast<std::size_t>(row * options.height + y) * static_cast<std::size_t>(sheet.width) +
                          static_cast<std::size_t>(column * options.width + x);
-      for (std::size_t i = 0; i < 3; ++i) sheet.rgb[3 * place + i] = to_srgb(sum[i] / static_cast<float>(s * s));
+      for (std::size_t c = 0; c < 3; ++c) sheet.rgb[3 * place + c] = to_srgb(colour[c]);
     }
+  });
 }
 
 void require_drawable(const std::vector<RenderItem>& items, const RenderOptions& options) {

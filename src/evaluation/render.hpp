@@ -34,7 +34,7 @@ struct RenderOptions {
   std::vector<std::string> views = {"front", "right"};
   Eigen::Vector3d up = {0, 0, 1};
   bool wireframe = false;  ///< draw the triangles' edges
-  int supersampling = 3;   ///< samples per pixel and direction, [1, 8]
+  int supersampling = 2;   ///< samples per pixel and direction, [1, 8]
 };
 
 /// Draws every mesh (a row of tiles each) in every view (a column each), orthographic, all at the same scale, each in
