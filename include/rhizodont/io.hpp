@@ -52,12 +52,19 @@ struct MeshFile {
 /// True if every coordinate, rounded to float, is still the same number.
 bool coordinates_fit_float(const TriangleMesh& mesh);
 
-/// Reads .stl (binary, ASCII), .ply (ASCII, binary of both byte orders), .obj, .off, .vtp (ASCII, base64, raw, zlib) by
-/// extension, upper or lower case. Order of vertices and triangles is that of the file; STL vertices are merged where
-/// their bits are equal (-0 = +0) and numbered by first appearance. Polygons are cut into a fan from their first
-/// corner. Throws InputError, with the line, the element or the byte concerned, if the file is missing, empty, damaged,
-/// cut off, holds no triangle, a coordinate that is not a number, or an index that is not a vertex; UsageError for
-/// another extension.
+/// Reads STL (binary, text), PLY (text, binary of both byte orders; polygons, strips), OBJ, OFF, VTP (text, base64,
+/// raw; zlib, LZ4) and legacy VTK (POLYDATA, text and binary, to version 5). The content says which of them it is, the
+/// file's ending only where the content leaves it open. gzip around any of them is unpacked (to at most 1 GiB, and
+/// beyond 64 MiB to 200 times the packed size); byte order marks, UTF-16 and line ends of every kind are understood.
+///
+/// Order of vertices and triangles is that of the file. Vertices with equal bits (-0 = +0) are merged: in STL all of
+/// them, numbered by first appearance; elsewhere where that closes a seam between triangles' borders, the first staying
+/// (`file_vertices`), so that sheets that only touch stay apart. Polygons are cut into a fan from their first corner,
+/// or, where that is wrong, along their inside. Colours per vertex become the attributes red, green and blue (uint8).
+///
+/// Throws InputError, with the line, the element or the byte concerned, if the file is missing, empty, damaged, cut
+/// off, something else than a mesh in one of these formats (then named), holds no triangle, a coordinate that is not a
+/// number, or an index that is not a vertex. What was mended or passed over stands in `notes`.
 MeshFile load_mesh(const std::filesystem::path& path);
 
 /// As `load_mesh`, of bytes that are at hand, such as those of standard input. The hint is a file's name, its ending or

@@ -20,7 +20,7 @@
 
 namespace rhizodont {
 
-/// Words of a text, with the number of the line (from 1) on which the last one stood.
+/// Words of a text, with the number of the line (from 1) on which the last one stood. Lines end with LF, CR or both.
 class TextCursor {
  public:
   explicit TextCursor(std::string_view text, std::int64_t first_line = 1) : text_(text), line_(first_line) {}
@@ -29,7 +29,7 @@ class TextCursor {
 
   /// The next word, over line ends; nothing at the end of the text.
   std::optional<std::string_view> word() {
-    while (place_ < text_.size() && is_space(text_[place_])) line_ += text_[place_++] == '\n';
+    for (; place_ < text_.size() && is_space(text_[place_]); ++place_) line_ += ends_line(place_);
     if (place_ == text_.size()) return std::nullopt;
     const std::size_t start = place_;
     while (place_ < text_.size() && !is_space(text_[place_])) ++place_;
@@ -38,22 +38,40 @@ class TextCursor {
 
   /// What is left of the current line, without its end.
   std::string_view rest_of_line() {
-    const std::size_t end = std::min(text_.find('\n', place_), text_.size());
+    std::size_t end = place_;
+    while (end < text_.size() && text_[end] != '\n' && text_[end] != '\r') ++end;
     const std::string_view rest = text_.substr(place_, end - place_);
-    place_ = std::min(end + 1, text_.size());
+    const bool two = end + 1 < text_.size() && text_[end] == '\r' && text_[end + 1] == '\n';
+    place_ = std::min(end + (two ? 2 : 1), text_.size());
     line_ += end < text_.size();
     return rest;
   }
 
   std::size_t remaining() const { return text_.size() - place_; }
 
+  /// Bytes among the text, taken as they are. Precondition: count <= remaining().
+  std::string_view bytes(std::size_t count) {
+    const std::string_view taken = text_.substr(place_, count);
+    place_ += count;
+    return taken;
+  }
+
  private:
+  bool ends_line(std::size_t place) const {
+    return text_[place] == '\n' || (text_[place] == '\r' && (place + 1 == text_.size() || text_[place + 1] != '\n'));
+  }
   static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
   std::string_view text_;
   std::size_t place_ = 0;
   std::int64_t line_;
 };
+
+/// Whether a word is the expected one, which is in lower case, in whatever case it is written.
+inline bool same_word(std::string_view word, std::string_view expected) {
+  return std::equal(word.begin(), word.end(), expected.begin(), expected.end(),
+                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + ('a' - 'A') : a) == b; });
+}
 
 /// The number that a whole word is, in any of the usual spellings; nothing if it is none.
 /// Correctly rounded to T.
@@ -113,11 +131,6 @@ Point read_coordinates(TextCursor& words, const Fail& fail) {
     coordinate = *value;
   }
   return point;
-}
-
-/// Appends the fan of a polygon from its first corner.
-inline void append_fan(std::vector<Triangle>& triangles, const std::vector<std::int32_t>& polygon) {
-  for (std::size_t k = 2; k < polygon.size(); ++k) triangles.push_back({polygon[0], polygon[k - 1], polygon[k]});
 }
 
 /// An index in a file as ours; values that do not fit become -1, which `finish_reading` refuses.

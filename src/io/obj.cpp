@@ -1,7 +1,10 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wavefront OBJ: vertices and faces; texture coordinates, normals, groups and materials are passed over.
+// Wavefront OBJ: vertices, their colours, and faces; texture coordinates, normals, groups and materials are passed
+// over.
+#include "io/colours.hpp"
 #include "io/cursors.hpp"
+#include "io/face_list.hpp"
 #include "io/formats.hpp"
 
 #include <fmt/core.h>
@@ -24,7 +27,13 @@ class ObjReader {
         read_vertex(words);
       else if (keyword == "f")
         read_face(words);
+      else if (keyword == "#MRGB")
+        has_painted_colours_ = true;
     }
+    require_vertices_exist();
+    add_colours(file_, colours_);
+    if (has_painted_colours_) file_.notes.push_back("The colours painted on the vertices (#MRGB) are not read.");
+    faces_.move_to(file_);
     return std::move(file_);
   }
 
@@ -35,23 +44,28 @@ class ObjReader {
 
   // A line that ends in a backslash goes on in the next one.
   std::string_view logical_line() {
-    const auto without_return = [](std::string_view line) {
-      if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-      return line;
-    };
-    std::string_view line = without_return(cursor_.rest_of_line());
+    std::string_view line = cursor_.rest_of_line();
     if (line.empty() || line.back() != '\\') return line;
     joined_.clear();
     while (!line.empty() && line.back() == '\\') {
       joined_ += line.substr(0, line.size() - 1);
       joined_ += ' ';
-      line = without_return(cursor_.rest_of_line());
+      line = cursor_.rest_of_line();
     }
     return joined_ += line;
   }
 
   void read_vertex(TextCursor& words) {
     file_.mesh.vertices.push_back(read_coordinates(words, [&](const std::string& sentence) { fail(sentence); }));
+    // "v x y z w" has a weight, "v x y z r g b" a colour
+    std::array<double, 3> colour{};
+    std::size_t found = 0;
+    while (found < 3) {
+      const auto value = parse_number<double>(words.word().value_or(""));
+      if (!value) break;
+      colour[found++] = *value;
+    }
+    if (found == 3) colours_.push_back(colour);
   }
 
   void read_face(TextCursor& words) {
@@ -68,34 +82,30 @@ class ObjReader {
       polygon_.push_back(to_index(index));
     }
     if (polygon_.size() < 3) fail("a face needs three vertices");
-    append_fan(file_.mesh.triangles, polygon_);
+    faces_.add_polygon(polygon_);
   }
 
- public:
-  /// Faces may stand before their vertices, so this can only be told at the end.
-  void require_vertices_exist(const MeshFile& file) {
-    if (largest_.first < static_cast<std::int64_t>(file.mesh.vertices.size())) return;
+  // Faces may stand before their vertices, so this can only be told at the end.
+  void require_vertices_exist() {
+    if (largest_.first < static_cast<std::int64_t>(file_.mesh.vertices.size())) return;
     line_ = largest_.second;
-    fail(fmt::format("vertex {} does not exist, there are {}", largest_.first + 1, file.mesh.vertices.size()));
+    fail(fmt::format("vertex {} does not exist, there are {}", largest_.first + 1, file_.mesh.vertices.size()));
   }
 
- private:
   TextCursor cursor_;
   std::int64_t line_ = 1;
   std::string joined_;
   std::vector<std::int32_t> polygon_;
   std::pair<std::int64_t, std::int64_t> largest_{-1, 0};  // vertex of a face, line
+  std::vector<std::array<double, 3>> colours_;
+  bool has_painted_colours_ = false;
+  FaceList faces_;
   MeshFile file_;
 };
 
 }  // namespace
 
-MeshFile read_obj(std::string_view bytes) {
-  ObjReader reader(bytes);
-  MeshFile file = reader.read();
-  reader.require_vertices_exist(file);
-  return file;
-}
+MeshFile read_obj(std::string_view bytes) { return ObjReader(bytes).read(); }
 
 std::string write_obj(const MeshFile& file) {
   std::string text;

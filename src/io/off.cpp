@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Geomview OFF and its relatives with colours, normals or texture coordinates after the three coordinates.
+#include "io/colours.hpp"
 #include "io/cursors.hpp"
+#include "io/face_list.hpp"
 #include "io/formats.hpp"
 
 #include <fmt/core.h>
@@ -22,8 +24,10 @@ class OffReader {
     file_.mesh.vertices.reserve(static_cast<std::size_t>(vertex_count));
     for (std::int64_t v = 0; v < vertex_count; ++v) read_vertex(v, vertex_count);
     require_room(face_count, 2, "faces");
-    file_.mesh.triangles.reserve(static_cast<std::size_t>(face_count));
+    faces_.reserve(static_cast<std::size_t>(face_count));
     for (std::int64_t f = 0; f < face_count; ++f) read_face(f, face_count);
+    add_colours(file_, colours_);
+    faces_.move_to(file_);
     return std::move(file_);
   }
 
@@ -43,16 +47,22 @@ class OffReader {
     return std::nullopt;
   }
 
-  // Returns the words of the line with the counts, which may be the header's own line.
+  // Returns the words of the line with the counts, which may be the header's own line, the header's own word
+  // ("OFF492"), or all that there is of a header.
   TextCursor read_header() {
-    const auto first = content_line();
-    TextCursor words(first.value_or(""));
+    const std::string_view first = content_line().value_or("");
+    TextCursor words(first);
     const std::string_view keyword = words.word().value_or("");
-    const std::size_t name = keyword.find("OFF");
-    if (name == std::string_view::npos || keyword.size() != name + 3)
+    const std::size_t name = keyword.find_first_of("oO");
+    if (name == std::string_view::npos && parse_number<std::int64_t>(keyword)) return TextCursor(first);
+    const std::string_view from_name = keyword.substr(std::min(name, keyword.size()));
+    if (!same_word(from_name.substr(0, 3), "off"))
       throw InputError("this is no OFF file: it does not begin with 'OFF'");
     const std::string_view prefix = keyword.substr(0, name);
     if (prefix.find_first_of("4n") != std::string_view::npos) fail("only three-dimensional OFF files are read");
+    has_colours_ = same_word(prefix, "c");
+    const std::string_view glued = from_name.substr(3);
+    if (!glued.empty()) return TextCursor(first.substr(static_cast<std::size_t>(glued.data() - first.data())));
     TextCursor rest = words;
     const auto second = rest.word();
     if (second && *second == "BINARY") fail("binary OFF files are not read; save it as text or as PLY");
@@ -86,6 +96,14 @@ class OffReader {
   void read_vertex(std::int64_t index, std::int64_t total) {
     TextCursor words = record(index, total, "vertex");
     file_.mesh.vertices.push_back(read_coordinates(words, [&](const std::string& sentence) { fail(sentence); }));
+    if (!has_colours_) return;
+    std::array<double, 3> colour{};
+    for (double& part : colour) {
+      const auto value = parse_number<double>(words.word().value_or(""));
+      if (!value) return;
+      part = *value;
+    }
+    colours_.push_back(colour);
   }
 
   void read_face(std::int64_t index, std::int64_t total) {
@@ -101,12 +119,15 @@ class OffReader {
         fail(fmt::format("vertex {} does not exist", *v));
       polygon_.push_back(to_index(*v));
     }
-    append_fan(file_.mesh.triangles, polygon_);
+    faces_.add_polygon(polygon_);
   }
 
   TextCursor cursor_;
   std::int64_t line_ = 1;
   std::vector<std::int32_t> polygon_;
+  bool has_colours_ = false;
+  std::vector<std::array<double, 3>> colours_;
+  FaceList faces_;
   MeshFile file_;
 };
 

@@ -3,6 +3,7 @@
 // PLY: G. Turk, "The PLY Polygon File Format", 1994; type names of both generations ("uchar" and "uint8").
 #include "io/attribute_types.hpp"
 #include "io/cursors.hpp"
+#include "io/face_list.hpp"
 #include "io/formats.hpp"
 
 #include <fmt/core.h>
@@ -82,8 +83,13 @@ class HeaderReader {
     throw InputError(fmt::format("line {}: {}", header_.line_count, what), {header_.line_count});
   }
 
+  // Lines end as the first one does: after a header with CR alone, a body may begin with the byte of LF.
   std::string_view next_line() {
-    const std::size_t end = bytes_.find('\n', place_);
+    if (header_.line_count == 0) {
+      const std::size_t first_end = std::min(bytes_.find_first_of("\r\n"), bytes_.size());
+      if (bytes_.substr(first_end, 1) == "\r" && bytes_.substr(first_end, 2) != "\r\n") line_end_ = '\r';
+    }
+    const std::size_t end = bytes_.find(line_end_, place_);
     ++header_.line_count;
     if (end == std::string_view::npos) fail("the file ends within its header");
     std::string_view line = bytes_.substr(place_, end - place_);
@@ -141,6 +147,7 @@ class HeaderReader {
 
   std::string_view bytes_;
   std::size_t place_ = 0;
+  char line_end_ = '\n';
   Header header_;
 };
 
@@ -199,21 +206,20 @@ class BodyReader {
 
   MeshFile read() {
     file_.comments = header_.comments;
-    bool has_faces = false, has_strips = false;
     for (const Element& element : header_.elements) {
       require_room(element);
       if (element.name == "vertex") {
         read_vertices(element);
       } else if (element.name == "face") {
-        read_faces(element);
-        has_faces = true;
+        note_colours(element);
+        read_corner_lists(element, [&](std::uint64_t) { faces_.add_polygon(corners_); });
+      } else if (element.name == "tristrips") {
+        read_corner_lists(element, [&](std::uint64_t index) { add_strips(index); });
       } else {
-        has_strips |= element.name == "tristrips";
         for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) skip_record(element, i);
       }
     }
-    if (!has_faces && has_strips)
-      throw InputError("the file holds triangle strips, which are not read; save it with plain triangles");
+    faces_.move_to(file_);
     return std::move(file_);
   }
 
@@ -305,23 +311,44 @@ class BodyReader {
     }
   }
 
-  void read_faces(const Element& element) {
+  template <class Take>
+  void read_corner_lists(const Element& element, const Take& take) {
     const bool has_corners = std::any_of(element.properties.begin(), element.properties.end(), is_corner_list);
     if (!has_corners && element.count > 0) throw InputError("the file's faces have no list of vertices");
-    file_.mesh.triangles.reserve(element.count);
-    std::vector<std::int32_t> polygon;
+    faces_.reserve(faces_.size() + element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
       for (const Property& property : element.properties) {
         if (!is_corner_list(property)) {
           property.count_type ? skip_list(property, element, i) : static_cast<void>(next(property.type, element, i));
           continue;
         }
-        polygon.clear();
+        corners_.clear();
         for (std::uint64_t k = list_length(property, element, i); k > 0; --k)
-          polygon.push_back(to_index(static_cast<std::int64_t>(next(property.type, element, i))));
-        append_fan(file_.mesh.triangles, polygon);
+          // -1 divides strips; what is no vertex stays none
+          corners_.push_back(static_cast<std::int32_t>(
+              std::clamp(next(property.type, element, i), -2.0, static_cast<double>(INT32_MAX))));
+        take(i);
       }
     }
+  }
+
+  // One list holds any number of strips; -1 ends a strip.
+  void add_strips(std::uint64_t index) {
+    for (auto begin = corners_.begin(); begin != corners_.end();) {
+      const auto end = std::find(begin, corners_.end(), -1);
+      for (auto v = begin; v != end; ++v)
+        if (static_cast<std::size_t>(*v) >= file_.mesh.vertices.size())
+          throw InputError(fmt::format("strip {} (counted from 0) refers to a vertex that does not exist", index),
+                           {static_cast<std::int64_t>(index)});
+      faces_.add_strip({begin, end});
+      begin = end == corners_.end() ? end : end + 1;
+    }
+  }
+
+  void note_colours(const Element& element) {
+    if (std::any_of(element.properties.begin(), element.properties.end(),
+                    [](const Property& p) { return p.name == "red" || p.name == "diffuse_red"; }))
+      file_.notes.emplace_back("The file's colours per triangle are not read.");
   }
 
   static bool is_corner_list(const Property& property) {
@@ -331,6 +358,8 @@ class BodyReader {
 
   Header header_;
   Body body_;
+  std::vector<std::int32_t> corners_;
+  FaceList faces_;
   MeshFile file_;
 };
 

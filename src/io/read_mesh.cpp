@@ -2,6 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From bytes to a mesh: which reader, and what all formats have in common.
 #include "io/formats.hpp"
+#include "io/notes.hpp"
+#include "io/recognise.hpp"
+#include "io/stl.hpp"
+#include "io/unwrap.hpp"
+#include "io/weld.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -27,10 +32,9 @@ std::string read_bytes(const fs::path& path) {
   return bytes;
 }
 
-using Reader = MeshFile (*)(std::string_view);
-
-/// The ending of a name in lower case with its dot; also of a bare "ply" or ".ply".
-std::string format_hint(const fs::path& name) {
+/// The ending of a name in lower case with its dot; also of a bare "ply" or ".ply". An ending ".gz" is passed over.
+std::string format_hint(fs::path name) {
+  if (name.extension() == ".gz" || name.extension() == ".GZ") name = name.stem();
   std::string hint = name.has_extension() ? name.extension().string() : name.filename().string();
   for (char& c : hint)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
@@ -48,6 +52,30 @@ void take_out_repeated_corners(MeshFile& file) {
       triangles[kept++] = c;
   }
   triangles.resize(kept);
+  if (triangles.empty())
+    throw InputError("the file holds no triangle with three different corners", file.dropped_triangles);
+  if (const std::size_t dropped = file.dropped_triangles.size(); dropped > 0)
+    file.notes.push_back(counted(dropped, "facet without area was left out: two of its corners",
+                                 "facets without area were left out: two of their corners") +
+                         " are one point.");
+}
+
+MeshFile read_as(MeshFormat format, std::string_view bytes) {
+  switch (format) {
+    case MeshFormat::stl:
+      return read_stl(bytes);
+    case MeshFormat::ply:
+      return read_ply(bytes);
+    case MeshFormat::obj:
+      return read_obj(bytes);
+    case MeshFormat::off:
+      return read_off(bytes);
+    case MeshFormat::vtp:
+      return read_vtp(bytes);
+    case MeshFormat::vtk:
+      break;
+  }
+  return read_vtk(bytes);
 }
 
 }  // namespace
@@ -59,19 +87,19 @@ void finish_reading(MeshFile& file) {
     throw InputError("the mesh is too large");
   require_valid_indices(file.mesh);
   require_finite(file.mesh.vertices);
+  weld_seams(file);
   take_out_repeated_corners(file);
-  if (file.mesh.triangles.empty())
-    throw InputError("the file holds no triangle with three different corners", file.dropped_triangles);
   file.coordinates_fit_float = coordinates_fit_float(file.mesh);
 }
 
 MeshFile read_mesh(std::string_view bytes, const std::filesystem::path& name_or_format_hint) {
-  static const std::map<std::string, Reader> readers{
-      {".stl", read_stl}, {".ply", read_ply}, {".obj", read_obj}, {".off", read_off}, {".vtp", read_vtp}};
-  const auto reader = readers.find(format_hint(name_or_format_hint));
-  if (reader == readers.end()) throw UsageError("only files named .obj, .off, .ply, .stl, .vtp can be read");
   if (bytes.empty()) throw InputError("the file is empty");
-  MeshFile file = reader->second(bytes);
+  Unwrapped content;
+  content.bytes = bytes;
+  if (!is_exact_binary_stl(bytes)) unwrap(bytes, content);
+  if (content.bytes.empty()) throw InputError("the file is empty");
+  MeshFile file = read_as(recognise(content.bytes, format_hint(name_or_format_hint)), content.bytes);
+  file.notes.insert(file.notes.begin(), content.notes.begin(), content.notes.end());
   finish_reading(file);
   return file;
 }
@@ -81,8 +109,6 @@ MeshFile load_mesh(const std::filesystem::path& path) {
     return read_mesh(read_bytes(path), path);
   } catch (const InputError& error) {
     throw InputError(path.string() + ": " + error.what(), error.elements());
-  } catch (const UsageError& error) {
-    throw UsageError(path.string() + ": " + error.what());
   }
 }
 

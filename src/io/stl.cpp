@@ -1,48 +1,22 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // STL as written by scanners and CAD programs: 80 bytes of anything, a count, 50 bytes per triangle; or text.
+#include "io/stl.hpp"
 #include "io/cursors.hpp"
 #include "io/formats.hpp"
+#include "io/notes.hpp"
+#include "io/weld.hpp"
 #include "mesh/geometry.hpp"
 
 #include <fmt/core.h>
 
 #include <cmath>
-#include <limits>
-#include <unordered_map>
 
 namespace rhizodont {
 namespace {
 
 constexpr std::size_t header_size = 84, record_size = 50;
-
-// Numbers corners by first appearance; corners with equal coordinates are one vertex.
-class Welder {
- public:
-  explicit Welder(std::size_t triangle_count) { numbers_.reserve(triangle_count / 2 + 16); }
-
-  std::int32_t number(const std::array<float, 3>& corner, TriangleMesh& mesh) {
-    Key key{};
-    for (std::size_t i = 0; i < 3; ++i) key[i] = std::bit_cast<std::uint32_t>(corner[i] + 0.0F);  // -0 becomes +0
-    const auto [place, fresh] = numbers_.try_emplace(key, static_cast<std::int32_t>(mesh.vertices.size()));
-    if (fresh) mesh.vertices.emplace_back(corner[0], corner[1], corner[2]);
-    return place->second;
-  }
-
- private:
-  using Key = std::array<std::uint32_t, 3>;
-  struct Hash {
-    std::size_t operator()(const Key& key) const {
-      std::uint64_t h = 0;
-      for (const std::uint32_t part : key) {
-        h = (h ^ part) * 0x9e3779b97f4a7c15ULL;
-        h ^= h >> 29;
-      }
-      return h;
-    }
-  };
-  std::unordered_map<Key, std::int32_t, Hash> numbers_;
-};
+constexpr std::size_t most_triangles = 100'000'000;  // a larger announcement is no number of triangles
 
 void require_finite_corner(const std::array<float, 3>& corner, std::int64_t triangle) {
   for (const float x : corner)
@@ -52,109 +26,92 @@ void require_finite_corner(const std::array<float, 3>& corner, std::int64_t tria
           {triangle});
 }
 
+std::size_t announced_triangles(std::string_view bytes) {
+  ByteCursor cursor(bytes, std::endian::little);
+  cursor.skip(80);
+  return cursor.read<std::uint32_t>();
+}
+
+std::size_t triangles_with_room(std::string_view bytes) { return (bytes.size() - header_size) / record_size; }
+
+std::array<float, 3> read_corner(ByteCursor& cursor) {
+  std::array<float, 3> corner{};
+  for (float& x : corner) x = cursor.read<float>();
+  return corner;
+}
+
 MeshFile read_binary(std::string_view bytes, std::size_t count) {
   MeshFile file;
   file.mesh.triangles.reserve(count);
-  Welder welder(count);
+  EqualPoints points(count / 2);
   ByteCursor cursor(bytes, std::endian::little);
   cursor.skip(header_size);
   for (std::size_t t = 0; t < count; ++t) {
     cursor.skip(12);
     Triangle& triangle = file.mesh.triangles.emplace_back();
     for (std::int32_t& v : triangle) {
-      std::array<float, 3> corner{};
-      for (float& x : corner) x = cursor.read<float>();
+      const std::array<float, 3> corner = read_corner(cursor);
       require_finite_corner(corner, static_cast<std::int64_t>(t));
-      v = welder.number(corner, file.mesh);
+      v = points.number_in({corner[0], corner[1], corner[2]}, file.mesh.vertices);
     }
     cursor.skip(2);
   }
+  if (bytes.substr(0, 80).find("COLOR=") != std::string_view::npos)
+    file.notes.push_back("The file's colours per triangle are not read.");
   return file;
 }
 
-bool same_word(std::string_view word, std::string_view expected) {
-  return std::equal(word.begin(), word.end(), expected.begin(), expected.end(),
-                    [](char a, char b) { return (a >= 'A' && a <= 'Z' ? a + ('a' - 'A') : a) == b; });
+/// Whether bytes can be the triangles of a scan: coordinates are 0 or of a size that has a sense. Bytes of anything
+/// else do not look so for long.
+bool are_triangles(std::string_view bytes, std::size_t begin, std::size_t end) {
+  ByteCursor cursor(bytes, std::endian::little);
+  cursor.skip(header_size + begin * record_size);
+  for (std::size_t t = begin; t < end; ++t) {
+    cursor.skip(12);
+    for (int i = 0; i < 9; ++i) {
+      const float x = std::abs(cursor.read<float>());
+      if (!(x == 0 || (x > 1e-20F && x < 1e9F))) return false;
+    }
+    cursor.skip(2);
+  }
+  return end > begin;
 }
 
-class AsciiReader {
- public:
-  explicit AsciiReader(std::string_view text) : cursor_(text), welder_(text.size() / 200) {}
+/// A count that was never filled in, or written in the other byte order, or of corners: the file's size says how many
+/// triangles there are.
+bool is_known_wrong_count(std::size_t announced, std::size_t present) {
+  const auto as_written = static_cast<std::uint32_t>(announced);
+  const std::uint32_t turned =
+      as_written << 24 | (as_written << 8 & 0xff0000U) | (as_written >> 8 & 0xff00U) | as_written >> 24;
+  return announced == 0 || announced >= std::size_t{1} << 31 || turned == present || announced == 3 * present;
+}
 
-  MeshFile read() {
-    while (const auto word = cursor_.word()) {
-      if (same_word(*word, "solid") || same_word(*word, "endsolid"))
-        cursor_.rest_of_line();  // a name, of any number of words
-      else if (same_word(*word, "facet"))
-        read_facet();
-      else
-        fail(*word, "facet");
-    }
-    return std::move(file_);
+/// A binary file whose size is not the one announced. Precondition: there is a whole header.
+MeshFile read_of_other_size(std::string_view bytes) {
+  const std::size_t announced = announced_triangles(bytes), present = triangles_with_room(bytes);
+  const std::size_t left_over = (bytes.size() - header_size) % record_size;
+  if (left_over == 0 && are_triangles(bytes, 0, present) &&
+      (announced < present || is_known_wrong_count(announced, present))) {
+    MeshFile file = read_binary(bytes, present);
+    file.notes.push_back(
+        fmt::format("The file's count of triangles is wrong; all {} that it holds were read.", present));
+    return file;
   }
-
- private:
-  [[noreturn]] void fail(std::string_view found, std::string_view expected) const {
-    throw InputError(fmt::format("line {}: '{}' is expected, '{:.30}' was found", cursor_.line(), expected, found),
-                     {cursor_.line()});
+  if (announced > 0 && announced <= present) {
+    MeshFile file = read_binary(bytes, announced);
+    const std::size_t more = bytes.size() - header_size - announced * record_size;
+    file.notes.push_back(counted(more, "byte", "bytes") + " after the last triangle announced were passed over.");
+    return file;
   }
-
-  std::string_view next_word() {
-    const auto word = cursor_.word();
-    if (!word)
-      throw InputError(fmt::format("line {}: the file ends in the middle of a triangle", cursor_.line()),
-                       {cursor_.line()});
-    return *word;
-  }
-
-  void expect(std::string_view expected) {
-    const std::string_view word = next_word();
-    if (!same_word(word, expected)) fail(word, expected);
-  }
-
-  void read_facet() {
-    expect("normal");
-    for (int i = 0; i < 3; ++i) next_word();  // not used: many files hold zeros or "nan" here
-    expect("outer");
-    expect("loop");
-    Triangle triangle{};
-    for (std::int32_t& v : triangle) {
-      expect("vertex");
-      v = welder_.number(read_corner(), file_.mesh);
-    }
-    expect("endloop");
-    expect("endfacet");
-    file_.mesh.triangles.push_back(triangle);
-  }
-
-  std::array<float, 3> read_corner() {
-    std::array<float, 3> corner{};
-    for (float& x : corner) {
-      const std::string_view word = next_word();
-      const auto value = parse_number<float>(word);
-      if (!value) fail(word, "a number");
-      if (!std::isfinite(*value))
-        throw InputError(fmt::format("line {}: a coordinate is not a finite number", cursor_.line()), {cursor_.line()});
-      x = *value;
-    }
-    return corner;
-  }
-
-  TextCursor cursor_;
-  Welder welder_;
-  MeshFile file_;
-};
-
-// Many binary files begin with "solid" too: text has no zero bytes and goes on with a keyword.
-bool looks_like_text(std::string_view bytes) {
-  TextCursor cursor(bytes);
-  const auto first = cursor.word();
-  if (!first || !same_word(*first, "solid")) return false;
-  const std::string_view start = bytes.substr(0, 4096);
-  if (start.find('\0') != std::string_view::npos) return false;
-  cursor.rest_of_line();
-  const auto keyword = cursor.word();
-  return !keyword || same_word(*keyword, "facet") || same_word(*keyword, "endsolid");
+  const std::size_t whole = std::min(announced, present);
+  if (whole > 0 && !are_triangles(bytes, 0, whole))
+    throw InputError("this is no STL file: it is neither text nor triangles");
+  if (announced == 0) throw InputError("the file holds no triangles, or it is damaged or cut off");
+  if (announced > most_triangles)
+    throw InputError(fmt::format("the file is damaged or cut off: it has room for {} only",
+                                 counted(present, "triangle", "triangles")));
+  throw InputError(
+      fmt::format("the file is damaged or cut off: it announces {} triangles and has room for {}", announced, present));
 }
 
 template <class T>
@@ -166,19 +123,21 @@ void append(std::string& bytes, T value) {
 
 }  // namespace
 
+bool is_exact_binary_stl(std::string_view bytes) {
+  return bytes.size() > header_size && bytes.size() == header_size + record_size * announced_triangles(bytes);
+}
+
+bool is_binary_stl_of_other_size(std::string_view bytes) {
+  if (bytes.size() < header_size + record_size) return false;
+  const std::size_t announced = announced_triangles(bytes), present = triangles_with_room(bytes);
+  return are_triangles(bytes, 0, announced > 0 ? std::min(announced, present) : present);
+}
+
 MeshFile read_stl(std::string_view bytes) {
-  std::size_t count = 0;
-  if (bytes.size() >= header_size) {
-    ByteCursor cursor(bytes, std::endian::little);
-    cursor.skip(80);
-    count = cursor.read<std::uint32_t>();
-    if (bytes.size() == header_size + record_size * count) return read_binary(bytes, count);
-  }
-  if (looks_like_text(bytes)) return AsciiReader(bytes).read();
+  if (is_exact_binary_stl(bytes)) return read_binary(bytes, triangles_with_room(bytes));
+  if (is_stl_text(bytes)) return read_stl_text(bytes);
   if (bytes.size() < header_size) throw InputError("the file is too short for an STL file: it is damaged or cut off");
-  const std::size_t present = (bytes.size() - header_size) / record_size;
-  throw InputError(
-      fmt::format("the file is damaged or cut off: it announces {} triangles and has room for {}", count, present));
+  return read_of_other_size(bytes);
 }
 
 std::string write_stl(const MeshFile& file) {

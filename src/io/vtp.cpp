@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // VTK XML PolyData: points, polygons, triangle strips and one-component point data.
 #include "io/attribute_types.hpp"
+#include "io/colours.hpp"
 #include "io/cursors.hpp"
+#include "io/face_list.hpp"
 #include "io/formats.hpp"
 #include "io/vtp_arrays.hpp"
 
@@ -32,6 +34,14 @@ std::string without_appended_data(std::string_view bytes, std::string_view& appe
   return std::string(bytes.substr(0, start)).append(bytes.substr(end));
 }
 
+VtkCompression compression_named(std::string_view compressor) {
+  if (compressor.empty()) return VtkCompression::none;
+  if (compressor == "vtkZLibDataCompressor") return VtkCompression::zlib;
+  if (compressor == "vtkLZ4DataCompressor") return VtkCompression::lz4;
+  throw InputError(fmt::format(
+      "the file is compressed with '{:.40}', which is not read; save it with zlib or without compression", compressor));
+}
+
 void open_document(std::string_view bytes, Document& document) {
   const std::string text = without_appended_data(bytes, document.storage.appended);
   const pugi::xml_parse_result parsed = document.xml.load_buffer(text.data(), text.size());
@@ -46,12 +56,8 @@ void open_document(std::string_view bytes, Document& document) {
   if (std::string_view(root.attribute("type").as_string()) != "PolyData")
     throw InputError("this is no VTK file with surface data (PolyData)");
   const std::string_view compressor = root.attribute("compressor").as_string();
-  if (!compressor.empty() && compressor != "vtkZLibDataCompressor")
-    throw InputError(
-        fmt::format("the file is compressed with '{:.40}', which is not read; save it with zlib or without compression",
-                    compressor));
   VtkStorage& storage = document.storage;
-  storage.compressed = !compressor.empty();
+  storage.compression = compression_named(compressor);
   storage.wide_header = std::string_view(root.attribute("header_type").as_string()) == "UInt64";
   storage.byte_order = std::string_view(root.attribute("byte_order").as_string()) == "BigEndian" ? std::endian::big
                                                                                                  : std::endian::little;
@@ -60,7 +66,8 @@ void open_document(std::string_view bytes, Document& document) {
 
 class PieceReader {
  public:
-  PieceReader(const VtkStorage& storage, MeshFile& file) : storage_(storage), file_(file) {}
+  PieceReader(const VtkStorage& storage, MeshFile& file, FaceList& faces)
+      : storage_(storage), file_(file), faces_(faces) {}
 
   void read(const pugi::xml_node& piece, bool with_attributes) {
     const std::size_t first = file_.mesh.vertices.size();
@@ -108,32 +115,39 @@ class PieceReader {
               {static_cast<std::int64_t>(cell)});
         corners.push_back(to_index(first_ + static_cast<std::int64_t>(v)));
       }
-      strips ? append_strip(corners) : append_fan(file_.mesh.triangles, corners);
+      strips ? faces_.add_strip(corners) : faces_.add_polygon(corners);
     }
   }
 
-  // Every second triangle of a strip is turned around.
-  void append_strip(const std::vector<std::int32_t>& corners) {
-    for (std::size_t k = 2; k < corners.size(); ++k) {
-      const std::size_t odd = k % 2;
-      file_.mesh.triangles.push_back({corners[k - 2 + odd], corners[k - 1 - odd], corners[k]});
-    }
-  }
-
+  // Values beside the mesh are no reason to refuse it.
   void read_attributes(const pugi::xml_node& data) {
     for (const pugi::xml_node& node : data.children("DataArray")) {
       const std::string name = node.attribute("Name").as_string();
-      const std::string_view type = node.attribute("type").as_string();
-      if (name.empty() || node.attribute("NumberOfComponents").as_int(1) != 1 || type == "String") continue;
-      VtkArray array = read_vtk_array(node, storage_);
-      if (array.values.size() != added_)
-        throw InputError(fmt::format("the array '{}' has {} values for {} points", name, array.values.size(), added_));
-      file_.vertex_attributes[name] = {array.type, std::move(array.values)};
+      const int components = node.attribute("NumberOfComponents").as_int(1);
+      const bool is_colour =
+          (components == 3 || components == 4) && std::string_view(node.attribute("type").as_string()) == "UInt8";
+      if (name.empty() || (components != 1 && !is_colour)) continue;
+      try {
+        take_attribute(name, read_vtk_array(node, storage_));
+      } catch (const InputError& error) {
+        file_.notes.push_back(fmt::format("Values of the points were passed over: {}.", error.what()));
+      }
     }
+  }
+
+  void take_attribute(const std::string& name, VtkArray array) {
+    if (array.values.size() != added_ * array.components)
+      throw InputError(
+          fmt::format("the array '{:.60}' has {} values for {} points", name, array.values.size(), added_));
+    if (array.components == 1)
+      file_.vertex_attributes[name] = {array.type, std::move(array.values)};
+    else
+      add_colours(file_, colours_of(array.values, array.components));
   }
 
   const VtkStorage& storage_;
   MeshFile& file_;
+  FaceList& faces_;
   std::size_t added_ = 0;
   std::int64_t first_ = 0;
 };
@@ -146,9 +160,11 @@ MeshFile read_vtp(std::string_view bytes) {
   const auto pieces = document.xml.child("VTKFile").child("PolyData").children("Piece");
   const bool one_piece = std::distance(pieces.begin(), pieces.end()) == 1;
   MeshFile file;
-  PieceReader reader(document.storage, file);
+  FaceList faces;
+  PieceReader reader(document.storage, file, faces);
   for (const pugi::xml_node& piece : pieces)
     if (piece.attribute("NumberOfPoints").as_ullong() > 0) reader.read(piece, one_piece);
+  faces.move_to(file);
   return file;
 }
 

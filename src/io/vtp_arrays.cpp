@@ -1,63 +1,28 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Arrays of VTK XML files ("VTK File Formats", Kitware): text, base64 or raw bytes, plain or in zlib blocks.
+// Arrays of VTK XML files ("VTK File Formats", Kitware): text, base64 or raw bytes, plain or in blocks packed with zlib
+// or LZ4.
 #include "io/vtp_arrays.hpp"
 
-#include "io/attribute_types.hpp"
 #include "io/base64.hpp"
 #include "io/cursors.hpp"
+#include "io/vtk_numbers.hpp"
 
 #include <fmt/core.h>
+#include <lz4.h>
 #include <zlib.h>
 
-#include <cmath>
+#include <span>
 
 namespace rhizodont {
 namespace {
 
-enum class Stored { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
-
-std::optional<Stored> stored_type(std::string_view name) {
+std::optional<VtkNumber> number_type(std::string_view name) {
   static constexpr std::array<std::string_view, 10> names{"Int8",   "UInt8", "Int16",  "UInt16",  "Int32",
                                                           "UInt32", "Int64", "UInt64", "Float32", "Float64"};
   const auto place = std::find(names.begin(), names.end(), name);
   if (place == names.end()) return std::nullopt;
-  return static_cast<Stored>(place - names.begin());
-}
-
-AttributeType attribute_type(Stored stored) {
-  switch (stored) {
-    case Stored::int8:
-      return AttributeType::int8;
-    case Stored::uint8:
-      return AttributeType::uint8;
-    case Stored::int16:
-      return AttributeType::int16;
-    case Stored::uint16:
-      return AttributeType::uint16;
-    case Stored::int32:
-      return AttributeType::int32;
-    case Stored::uint32:
-      return AttributeType::uint32;
-    case Stored::float32:
-      return AttributeType::float32;
-    default:
-      return AttributeType::float64;
-  }
-}
-
-template <class Number>
-std::vector<double> numbers(const std::string& bytes, std::endian order) {
-  ByteCursor cursor(bytes, order);
-  std::vector<double> values(bytes.size() / sizeof(Number));
-  for (double& value : values) value = static_cast<double>(cursor.read<Number>());
-  return values;
-}
-
-std::vector<double> numbers(Stored stored, const std::string& bytes, std::endian order) {
-  if (stored == Stored::int64) return numbers<std::int64_t>(bytes, order);
-  if (stored == Stored::uint64) return numbers<std::uint64_t>(bytes, order);
-  return with_attribute_type(attribute_type(stored), [&](auto kind) { return numbers<decltype(kind)>(bytes, order); });
+  return static_cast<VtkNumber>(place - names.begin());
 }
 
 class ArrayReader {
@@ -66,20 +31,20 @@ class ArrayReader {
       : node_(node), storage_(storage), name_(node.attribute("Name").as_string("without a name")) {}
 
   VtkArray read() {
-    const auto stored = stored_type(node_.attribute("type").as_string());
-    if (!stored) fail(fmt::format("is of type '{:.30}', which is not read", node_.attribute("type").as_string()));
+    const auto type = number_type(node_.attribute("type").as_string());
+    if (!type) fail(fmt::format("is of type '{:.30}', which is not read", node_.attribute("type").as_string()));
     VtkArray array;
-    array.type = attribute_type(*stored);
+    array.type = attribute_type(*type);
     const int components = node_.attribute("NumberOfComponents").as_int(1);
     if (components < 1) fail("has no components");
     array.components = static_cast<std::size_t>(components);
     const std::string_view format = node_.attribute("format").as_string("ascii");
     if (format == "ascii")
-      array.values = read_text(*stored);
+      array.values = read_text(*type);
     else if (format == "binary")
-      array.values = numbers(*stored, unpack(decode_base64(node_.text().get())), storage_.byte_order);
+      array.values = numbers_from(*type, unpack(decode_base64(node_.text().get())), storage_.byte_order);
     else if (format == "appended")
-      array.values = numbers(*stored, unpack(appended_bytes()), storage_.byte_order);
+      array.values = numbers_from(*type, unpack(appended_bytes()), storage_.byte_order);
     else
       fail(fmt::format("is stored as '{:.30}', which is not read", format));
     return array;
@@ -90,20 +55,15 @@ class ArrayReader {
     throw InputError(fmt::format("the array '{}' {}", name_, what));
   }
 
-  std::vector<double> read_text(Stored stored) const {
+  std::vector<double> read_text(VtkNumber type) const {
     std::vector<double> values;
     TextCursor words(node_.text().get());
     while (const auto word = words.word()) {
-      const auto value = stored == Stored::float32 ? widened(parse_number<float>(*word)) : parse_number<double>(*word);
+      const auto value = number_from(type, *word);
       if (!value) fail(fmt::format("holds '{:.30}', which is not a number", *word));
       values.push_back(*value);
     }
     return values;
-  }
-
-  static std::optional<double> widened(std::optional<float> value) {
-    if (!value) return std::nullopt;
-    return static_cast<double>(*value);
   }
 
   std::string appended_bytes() const {
@@ -121,7 +81,7 @@ class ArrayReader {
   // Takes off the sizes in front, and the compression.
   std::string unpack(const std::string& bytes) const {
     ByteCursor cursor(bytes, storage_.byte_order);
-    if (storage_.compressed) return inflate_blocks(bytes, cursor);
+    if (storage_.compression != VtkCompression::none) return inflate_blocks(bytes, cursor);
     const std::uint64_t size = read_size(cursor);
     if (size > cursor.remaining()) fail("is cut off");
     return bytes.substr(cursor.place(), size);
@@ -136,18 +96,37 @@ class ArrayReader {
     for (std::size_t k = 0; k < packed_sizes.size(); ++k) {
       const std::uint64_t size = k + 1 == count && last_size > 0 ? last_size : block_size;
       if (packed_sizes[k] > cursor.remaining()) fail("is cut off");
-      // zlib packs at most about 1 : 1032; a larger promise is a lie and would only cost memory
+      // zlib packs at most about 1 : 1032, LZ4 1 : 255; a larger promise is a lie and would only cost memory
       if (size > 1100 * packed_sizes[k] + 64) fail("is damaged");
       const std::size_t start = unpacked.size();
       unpacked.resize(start + size);
-      auto length = static_cast<uLongf>(size);
-      const int outcome = uncompress(reinterpret_cast<Bytef*>(unpacked.data() + start), &length,
-                                     reinterpret_cast<const Bytef*>(bytes.data() + cursor.place()),
-                                     static_cast<uLong>(packed_sizes[k]));
-      if (outcome != Z_OK || length != size) fail("is damaged: its compressed data cannot be unpacked");
+      if (!unpack_block({bytes.data() + cursor.place(), packed_sizes[k]}, {unpacked.data() + start, size}))
+        fail("is damaged: its compressed data cannot be unpacked");
       cursor.skip(packed_sizes[k]);
     }
     return unpacked;
+  }
+
+  // False if the block is not of just that size. Where the named way of packing does not fit, the other one is tried:
+  // programs have been seen to write one and name the other.
+  bool unpack_block(std::string_view packed, std::span<char> unpacked) const {
+    if (storage_.compression == VtkCompression::lz4)
+      return unpack_lz4(packed, unpacked) || unpack_zlib(packed, unpacked);
+    return unpack_zlib(packed, unpacked) || unpack_lz4(packed, unpacked);
+  }
+
+  static bool unpack_lz4(std::string_view packed, std::span<char> unpacked) {
+    if (std::max(packed.size(), unpacked.size()) > std::size_t{INT32_MAX}) return false;
+    const int length = LZ4_decompress_safe(packed.data(), unpacked.data(), static_cast<int>(packed.size()),
+                                           static_cast<int>(unpacked.size()));
+    return length >= 0 && static_cast<std::size_t>(length) == unpacked.size();
+  }
+
+  static bool unpack_zlib(std::string_view packed, std::span<char> unpacked) {
+    auto length = static_cast<uLongf>(unpacked.size());
+    const int outcome = uncompress(reinterpret_cast<Bytef*>(unpacked.data()), &length,
+                                   reinterpret_cast<const Bytef*>(packed.data()), static_cast<uLong>(packed.size()));
+    return outcome == Z_OK && length == unpacked.size();
   }
 
   const pugi::xml_node& node_;

@@ -14,13 +14,15 @@
 
 namespace rhizodont {
 
+enum class VtkCompression { none, zlib, lz4 };
+
 /// How the arrays of one VTK XML file are stored.
 struct VtkStorage {
   std::endian byte_order = std::endian::little;
-  bool wide_header = false;   ///< sizes before the data are 64 bits, not 32
-  bool compressed = false;    ///< zlib blocks
-  bool appended_raw = false;  ///< the appended section holds bytes, not base64
-  std::string_view appended;  ///< the appended section, after its underscore
+  bool wide_header = false;                           ///< sizes before the data are 64 bits, not 32
+  VtkCompression compression = VtkCompression::none;  ///< of blocks
+  bool appended_raw = false;                          ///< the appended section holds bytes, not base64
+  std::string_view appended;                          ///< the appended section, after its underscore
 };
 
 /// Numbers of a DataArray element.

@@ -98,6 +98,12 @@ inline MeshFile parse(MeshFile (*reader)(std::string_view), const std::string& b
   return file;
 }
 
+/// Whether one of the reader's notes holds these words.
+inline bool notes_hold(const MeshFile& file, const std::string& words) {
+  return std::any_of(file.notes.begin(), file.notes.end(),
+                     [&](const std::string& note) { return note.find(words) != std::string::npos; });
+}
+
 /// Equal bits, with -0 and +0 told apart.
 inline bool same_bits(const TriangleMesh& a, const TriangleMesh& b) {
   return a.triangles == b.triangles && a.vertices.size() == b.vertices.size() &&

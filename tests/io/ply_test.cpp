@@ -174,6 +174,30 @@ TEST(Ply, BadContentsAreRefused) {
   }
 }
 
+TEST(Ply, StripsMayBeginAgainAndTurnEverySecondTime) {
+  const std::string head =
+      "format ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement camera "
+      "1\nproperty float focus\nelement tristrips 2\nproperty uchar flag\nproperty list int int "
+      "vertex_indices\nend_header\n0 0 0\n0 1 0\n1 0 0\n1 1 0\n2 0 0\n50\n";
+  const MeshFile file = load_bytes("a.ply", "ply\n" + head + "9 9 0 1 2 3 -1 -1 4 2 3\n9 4 0 2 2 4\n");
+  EXPECT_EQ(file.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}, {4, 2, 3}}));
+  EXPECT_TRUE(file.dropped_triangles.empty());  // a corner twice only leads on
+  expect_refused("a.ply", "ply\n" + head + "9 4 0 1 2 5\n9 3 0 1 2\n", "strip 0 (counted from 0) refers to a vertex");
+  expect_refused("a.ply", "ply\n" + head + "9 4 0 1 2 -2\n9 3 0 1 2\n", "strip 0 (counted from 0) refers to a vertex");
+}
+
+TEST(Ply, HeadersWithReturnsAloneMayPrecedeAnyByte) {
+  for (const char first : {'\n', '\r', 'x'}) {
+    Bytes bytes(
+        "ply\rformat binary_little_endian 1.0\relement vertex 3\rproperty uchar tag\rproperty float x\rproperty float "
+        "y\rproperty float z\relement face 1\rproperty list uchar uchar vertex_indices\rend_header\r");
+    for (int v = 0; v < 3; ++v) bytes.add(first).add(v == 1 ? 1.0F : 0.0F).add(v == 2 ? 1.0F : 0.0F).add(0.0F);
+    bytes.add(std::uint8_t{3}).add(std::uint8_t{0}).add(std::uint8_t{1}).add(std::uint8_t{2});
+    const MeshFile file = load_bytes("a.ply", bytes.str());
+    EXPECT_EQ(file.mesh.vertices, (std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+  }
+}
+
 TEST(Ply, RepeatedCornersAreTakenOutAndNoted) {
   const MeshFile file = load_bytes("a.ply", changed("9 4 0 1 2 3", "9 4 0 1 1 3"));
   EXPECT_EQ(file.dropped_triangles, std::vector<std::int64_t>{0});

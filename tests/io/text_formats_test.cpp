@@ -35,7 +35,7 @@ TEST(Obj, BadFilesAreRefusedWithTheirLine) {
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   expect_refused("a.obj", "", "empty");
   expect_refused("a.obj", vertices, "no triangles");
-  expect_refused("a.obj", "\x01\x02\x03", "no triangles");
+  expect_refused("a.obj", "\x01\x02\x03", "no mesh in a format that is read");
   expect_refused("a.obj", vertices + "f 1 2 4\n", "line 4: vertex 4 does not exist, there are 3");
   expect_refused("a.obj", vertices + "f 1 2 99999999999\n", "line 4: vertex 99999999999 does not exist");
   expect_refused("a.obj", vertices + "f 0 1 2\n", "line 4: vertex 0 does not exist");
@@ -61,6 +61,50 @@ TEST(Obj, RoundTripKeepsDoublesAndFloatsToTheBit) {
   EXPECT_TRUE(test::same_bits(load_mesh(folder.path() / "a.obj").mesh, file.mesh));
 }
 
+TEST(Obj, LinesPointsAndCurvesArePassedOver) {
+  const MeshFile file = load_bytes(
+      "a.obj", "g all\nvp 0.5\nv 0 0 0\nv 1 0 0\nl 1 2\np 1\nv 1 1 0\nv 0 1 0\nusemtl tooth\nf 1// 2// 3// 4//\n");
+  EXPECT_EQ(file.mesh.vertices, square);
+  EXPECT_EQ(file.mesh.triangles, fan);
+}
+
+TEST(Obj, ColoursOfEveryVertexAreRead) {
+  const MeshFile unit =
+      load_bytes("a.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 1 1 0 0 0 1 1\nv 0 1 0 0 0 0.2\nf 1 2 3 4\n");
+  EXPECT_EQ(unit.vertex_attributes.at("red").values, (std::vector<double>{255, 0, 0, 0}));
+  EXPECT_EQ(unit.vertex_attributes.at("green").values, (std::vector<double>{0, 128, 0, 0}));
+  EXPECT_EQ(unit.vertex_attributes.at("blue").values, (std::vector<double>{0, 0, 255, 51}));
+  EXPECT_EQ(unit.vertex_attributes.at("red").type, AttributeType::uint8);
+  const MeshFile bytes =
+      load_bytes("a.obj", "v 0 0 0 255 0 0\nv 1 0 0 0 128 0\nv 1 1 0 0 0 300\nv 0 1 0 1 -1 51\nf 1 2 3 4\n");
+  EXPECT_EQ(bytes.vertex_attributes.at("blue").values, (std::vector<double>{0, 0, 255, 51}));
+  EXPECT_EQ(bytes.vertex_attributes.at("red").values, (std::vector<double>{255, 0, 0, 1}));
+  EXPECT_EQ(bytes.vertex_attributes.at("green").values, (std::vector<double>{0, 128, 0, 0}));
+  const MeshFile some = load_bytes("a.obj", "v 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0 1\nf 1 2 3\n");
+  EXPECT_TRUE(some.vertex_attributes.empty());
+  EXPECT_TRUE(test::notes_hold(some, "Not every vertex has a colour"));
+}
+
+TEST(Off, ColoursOfVerticesAreRead) {
+  const MeshFile file = load_bytes("a.off", "COFF\n3 1 0\n0 0 0 255 1 2 255\n1 0 0 3 4 5 255\n0 1 0 6 7 8\n3 0 1 2\n");
+  EXPECT_EQ(file.vertex_attributes.at("red").values, (std::vector<double>{255, 3, 6}));
+  EXPECT_EQ(file.vertex_attributes.at("blue").values, (std::vector<double>{2, 5, 8}));
+}
+
+TEST(Off, CountsMayHangOnTheHeaderOrStandAlone) {
+  const std::string body = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+  for (const std::string head : {"OFF4 1 0\n", "off\n4 1 0\n", "4 1 0\n", "4 1\n", "# made by hand\n4 1 0\n"})
+    for (const char* name : {"a.off", "a.txt", "a"}) {
+      const MeshFile file = load_bytes(name, head + body);
+      EXPECT_EQ(file.mesh.vertices, square) << head << name;
+      EXPECT_EQ(file.mesh.triangles, fan) << head << name;
+    }
+  // numbers that do not fit their counts are no OFF file
+  expect_refused("a.txt", "5 1 0\n" + body, "numbers only");
+  expect_refused("a.xyz", "0 0 0\n1 0 0\n1 1 0\n", "numbers only");
+  expect_refused("a.off", "5 1 0\n" + body, "damaged or cut off");
+}
+
 TEST(Off, ReadsItsRelatives) {
   const std::string faces = "4 0 1 2 3  255 0 0\n";
   const std::string plain = "0 0 0\n1 0 0\n\n# comment\n1 1 0\n0 1 0\n";
@@ -77,7 +121,7 @@ TEST(Off, ReadsItsRelatives) {
 TEST(Off, BadFilesAreRefusedWithTheirLine) {
   const std::string vertices = "0 0 0\n1 0 0\n0 1 0\n";
   expect_refused("a.off", "", "empty");
-  expect_refused("a.off", "ply\n", "does not begin with 'OFF'");
+  expect_refused("a.off", "hello\n", "does not begin with 'OFF'");
   expect_refused("a.off", "4OFF\n3 1 0\n" + vertices + "3 0 1 2\n", "three-dimensional");
   expect_refused("a.off", "OFF BINARY\n", "binary OFF");
   expect_refused("a.off", "OFF\n", "ends within its header");

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/base64.hpp"
 #include "io/io_test_tools.hpp"
+#include "io/vtp_arrays.hpp"
 
 #include <fmt/core.h>
+#include <lz4.h>
 #include <zlib.h>
 
 namespace rhizodont {
@@ -28,7 +30,7 @@ enum class Storage { ascii, inline_base64, appended_raw, appended_base64 };
 
 struct Layout {
   Storage storage = Storage::ascii;
-  bool compressed = false;
+  VtkCompression compression = VtkCompression::none;
   bool wide_header = false;
   std::endian order = std::endian::little;
   std::size_t block = 32;  // bytes per compressed block
@@ -50,8 +52,7 @@ class VtpWriter {
     std::string text =
         fmt::format("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"{}\"{}{}>\n",
                     layout_.order == std::endian::big ? "BigEndian" : "LittleEndian",
-                    layout_.wide_header ? " header_type=\"UInt64\"" : "",
-                    layout_.compressed ? " compressor=\"vtkZLibDataCompressor\"" : "");
+                    layout_.wide_header ? " header_type=\"UInt64\"" : "", compressor());
     text += "<PolyData><Piece NumberOfPoints=\"4\" NumberOfPolys=\"2\">\n<PointData>" + heights + normals +
             "</PointData>\n<Points>" + points + "</Points>\n<Polys>" + connectivity + offsets +
             "</Polys></Piece></PolyData>\n";
@@ -67,10 +68,30 @@ class VtpWriter {
     layout_.wide_header ? bytes.add(static_cast<std::uint64_t>(size)) : bytes.add(static_cast<std::uint32_t>(size));
   }
 
+  const char* compressor() const {
+    if (layout_.compression == VtkCompression::none) return "";
+    return layout_.compression == VtkCompression::lz4 ? " compressor=\"vtkLZ4DataCompressor\""
+                                                      : " compressor=\"vtkZLibDataCompressor\"";
+  }
+
+  std::string squeeze(const std::string& block) const {
+    std::string squeezed(2 * block.size() + 64, '\0');
+    if (layout_.compression == VtkCompression::lz4) {
+      squeezed.resize(static_cast<std::size_t>(LZ4_compress_default(
+          block.data(), squeezed.data(), static_cast<int>(block.size()), static_cast<int>(squeezed.size()))));
+      return squeezed;
+    }
+    uLongf size = squeezed.size();
+    compress(reinterpret_cast<Bytef*>(squeezed.data()), &size, reinterpret_cast<const Bytef*>(block.data()),
+             block.size());
+    squeezed.resize(size);
+    return squeezed;
+  }
+
   // The sizes in front, and the data.
   std::pair<std::string, std::string> pack(const std::string& data) const {
     Bytes sizes({}, layout_.order);
-    if (!layout_.compressed) {
+    if (layout_.compression == VtkCompression::none) {
       add_size(sizes, data.size());
       return {sizes.str(), data};
     }
@@ -81,12 +102,9 @@ class VtpWriter {
     std::string packed;
     for (std::size_t k = 0; k < count; ++k) {
       const std::string block = data.substr(k * layout_.block, layout_.block);
-      uLongf size = compressBound(block.size());
-      std::string squeezed(size, '\0');
-      compress(reinterpret_cast<Bytef*>(squeezed.data()), &size, reinterpret_cast<const Bytef*>(block.data()),
-               block.size());
-      add_size(sizes, size);
-      packed += squeezed.substr(0, size);
+      const std::string squeezed = squeeze(block);
+      add_size(sizes, squeezed.size());
+      packed += squeezed;
     }
     return {sizes.str(), packed};
   }
@@ -115,11 +133,12 @@ class VtpWriter {
 std::vector<Layout> all_layouts() {
   std::vector<Layout> layouts{{}};
   for (const Storage storage : {Storage::inline_base64, Storage::appended_raw, Storage::appended_base64})
-    for (const bool compressed : {false, true})
+    for (const VtkCompression compression : {VtkCompression::none, VtkCompression::zlib, VtkCompression::lz4})
       for (const bool wide : {false, true})
         for (const std::endian order : {std::endian::little, std::endian::big})
           for (const std::size_t block : {std::size_t{16}, std::size_t{32}, std::size_t{4096}})
-            if (compressed || block == 32) layouts.push_back({storage, compressed, wide, order, block});
+            if (compression != VtkCompression::none || block == 32)
+              layouts.push_back({storage, compression, wide, order, block});
   return layouts;
 }
 
@@ -137,7 +156,8 @@ TEST(Vtp, EveryLayoutIsTheSameMesh) {
 TEST(Vtp, TruncatedFilesAreRefused) {
   for (const Storage storage :
        {Storage::ascii, Storage::inline_base64, Storage::appended_raw, Storage::appended_base64}) {
-    const std::string whole = VtpWriter({storage, storage != Storage::ascii}).write();
+    const std::string whole =
+        VtpWriter({storage, storage == Storage::ascii ? VtkCompression::none : VtkCompression::zlib}).write();
     for (std::size_t size = 0; size + 12 < whole.size(); ++size)
       EXPECT_THROW(test::parse(read_vtp, whole.substr(0, size)), InputError) << size;
   }
@@ -149,7 +169,7 @@ std::string changed(const std::string& what, const std::string& by, Layout layou
 }
 
 TEST(Vtp, DamagedDataAreRefused) {
-  Layout raw{Storage::appended_raw, true, false, std::endian::little, 4096};
+  Layout raw{Storage::appended_raw, VtkCompression::zlib, false, std::endian::little, 4096};
   std::string text = VtpWriter(raw).write();
   const std::size_t data = text.find(" _") + 2;
   text[data + 16 + 5] = static_cast<char>(text[data + 16 + 5] ^ 0x55);
@@ -162,7 +182,7 @@ TEST(Vtp, DamagedDataAreRefused) {
   text = VtpWriter(raw).write();
   text.replace(data, 4, "\xff\xff\xff\xff");
   expect_refused("a.vtp", text, "is cut off");
-  raw.compressed = false;
+  raw.compression = VtkCompression::none;
   text = VtpWriter(raw).write();
   text.replace(text.find(" _") + 2, 4, "\xff\xff\xff\xff");
   expect_refused("a.vtp", text, "is cut off");
@@ -173,8 +193,8 @@ TEST(Vtp, BadContentsAreRefused) {
   expect_refused("a.vtp", "", "empty");
   expect_refused("a.vtp", "<a><b></a>", "line 1: the file is no proper XML");
   expect_refused("a.vtp", changed("type=\"PolyData\"", "type=\"ImageData\""), "PolyData");
-  expect_refused("a.vtp", changed("byte_order", "compressor=\"vtkLZ4DataCompressor\" byte_order"),
-                 "vtkLZ4DataCompressor");
+  expect_refused("a.vtp", changed("byte_order", "compressor=\"vtkLZMADataCompressor\" byte_order"),
+                 "vtkLZMADataCompressor");
   expect_refused("a.vtp", changed("NumberOfPoints=\"4\"", "NumberOfPoints=\"5\""), "announces 5 points and holds 4");
   expect_refused("a.vtp", changed("0 1 2 3 2 1 0", "0 1 2 4 2 1 0"), "polygon 0 (counted from 0) refers to vertex 4");
   expect_refused("a.vtp", changed("0 1 2 3 2 1 0", "0 1 2 3 2 -1 0"), "polygon 1 (counted from 0) refers to vertex -1");
@@ -183,11 +203,64 @@ TEST(Vtp, BadContentsAreRefused) {
   expect_refused("a.vtp", changed("4 7", ""), "no triangles");
   expect_refused("a.vtp", changed("0 0 0 1 0 0", "0 0 nan 1 0 0"), "not finite");
   expect_refused("a.vtp", changed("0 0 0 1 0 0", "0 0 no 1 0 0"), "'Points' holds 'no'");
-  expect_refused("a.vtp", changed("0.1 0.2 0.3 0.4", "0.1 0.2 0.3"), "'height' has 3 values for 4 points");
   expect_refused("a.vtp",
                  changed("type=\"Float32\" NumberOfComponents=\"3\" Name=\"Points\"",
                          "type=\"Bit\" NumberOfComponents=\"3\" Name=\"Points\""),
                  "'Points' is of type 'Bit'");
+}
+
+TEST(Vtp, PackingIsKnownByTheBlocksThemselves) {
+  for (const VtkCompression compression : {VtkCompression::zlib, VtkCompression::lz4}) {
+    const bool zlib = compression == VtkCompression::zlib;
+    const MeshFile file = load_bytes("a.vtp", changed(zlib ? "vtkZLib" : "vtkLZ4", zlib ? "vtkLZ4" : "vtkZLib",
+                                                      {Storage::appended_raw, compression}));
+    EXPECT_EQ(file.mesh.triangles.size(), 3U);
+  }
+}
+
+TEST(Vtp, DamagedLz4IsRefused) {
+  const Layout layout{Storage::appended_raw, VtkCompression::lz4, false, std::endian::little, 4096};
+  std::string text = VtpWriter(layout).write();
+  const std::size_t data = text.find(" _") + 2;
+  text[data + 16] = static_cast<char>(text[data + 16] ^ 0x7f);
+  expect_refused("a.vtp", text, "is damaged");
+}
+
+TEST(Vtp, ValuesThatDoNotFitAreNoted) {
+  const MeshFile good = load_bytes("a.vtp", VtpWriter({}).write());
+  for (const auto& [what, by, note] : std::vector<std::array<std::string, 3>>{
+           {"0.1 0.2 0.3 0.4", "0.1 0.2 0.3", "'height' has 3 values for 4 points"},
+           {"0.1 0.2 0.3 0.4", "0.1 0.2 0.3 0.4 0.5", "'height' has 5 values for 4 points"},
+           {"0.1 0.2 0.3 0.4", "0.1 0.2 0.3 many", "'height' holds 'many'"},
+           {"type=\"Float64\" Name=\"height\"", "type=\"Bit\" Name=\"height\"", "'height' is of type 'Bit'"}}) {
+    const MeshFile file = load_bytes("a.vtp", changed(what, by));
+    EXPECT_TRUE(test::same_bits(file.mesh, good.mesh));
+    EXPECT_TRUE(file.vertex_attributes.empty());
+    EXPECT_TRUE(test::notes_hold(file, note)) << note;
+  }
+}
+
+TEST(Vtp, PiecesAreJoinedAndColoursRead) {
+  const std::string points =
+      "<Points><DataArray type=\"Float32\" NumberOfComponents=\"3\">0 0 0 1 0 0 0 1 0</DataArray></Points>";
+  const std::string polys =
+      "<Polys><DataArray type=\"UInt8\" Name=\"connectivity\">0 1 2</DataArray><DataArray type=\"UInt64\" "
+      "Name=\"offsets\">3</DataArray></Polys>";
+  const std::string colours =
+      "<PointData><DataArray type=\"UInt8\" Name=\"RGB\" NumberOfComponents=\"3\">255 0 1 4 5 6 7 8 "
+      "9</DataArray></PointData>";
+  const std::string piece = "<Piece NumberOfPoints=\"3\">" + points + polys + colours + "</Piece>";
+  const auto whole = [](const std::string& pieces) {
+    return "<VTKFile type=\"PolyData\"><PolyData>" + pieces + "</PolyData></VTKFile>";
+  };
+  const MeshFile one = load_bytes("a.vtp", whole(piece));
+  EXPECT_EQ(one.vertex_attributes.at("red").values, (std::vector<double>{255, 4, 7}));
+  EXPECT_EQ(one.vertex_attributes.at("blue").values, (std::vector<double>{1, 6, 9}));
+  std::string shifted = piece;
+  shifted.replace(shifted.find("0 0 0 1 0 0 0 1 0"), 17, "0 0 5 1 0 5 0 1 5");
+  const MeshFile two = load_bytes("a.vtp", whole(piece + shifted));
+  EXPECT_EQ(two.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {3, 4, 5}}));
+  EXPECT_EQ(two.mesh.vertices[4], Point(1, 0, 5));
 }
 
 TEST(Vtp, StripsAreTurnedEverySecondTime) {

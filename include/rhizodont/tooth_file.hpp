@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "rhizodont/complete.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+
+#include <filesystem>
+
+namespace rhizodont {
+
+/// A completed tooth as a file with the vertex attributes `source` (values of VertexSource) and `uncertainty` (mm).
+/// Where `crown`, the file that the tooth was completed from, has colours (red, green, blue, perhaps alpha; uint8, or 0
+/// to 1), scan vertices keep them and new vertices get their mean. Precondition: `tooth.record` has the numbers of
+/// `crown.mesh`, not yet those of the file (`refer_to_file`).
+MeshFile tooth_file(const CompletedTooth& tooth, const MeshFile& crown);
+
+/// Puts a record of `crown.mesh` into the terms of the file that it was read from: vertices get their numbers there
+/// (`MeshFile::file_vertices`), and the reader's notes go in front of the warnings, with a sentence on colours that a
+/// tooth written to `output` cannot hold. To be called once, when the record's numbers are no longer needed as they
+/// were.
+void refer_to_file(CompletionRecord& record, const MeshFile& crown, const std::filesystem::path& output);
+
+/// The error with the file's numbers, where its sentence says that its elements are vertices.
+InputError in_terms_of_file(const InputError& error, const MeshFile& crown);
+
+}  // namespace rhizodont
