@@ -5,6 +5,7 @@
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "rhizodont/tooth_file.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -48,21 +49,6 @@ ProgressCallback progress_line(bool quiet) {
 
 void clear_line(const ProgressCallback& progress) {
   if (progress) fmt::print(stderr, "\r\033[K");
-}
-
-MeshFile as_file(const CompletedTooth& tooth) {
-  MeshFile file;
-  file.mesh = tooth.mesh;
-  VertexAttribute source{AttributeType::uint8, {}};
-  for (const VertexSource s : tooth.source) source.values.push_back(static_cast<double>(s));
-  file.vertex_attributes[source_attribute] = std::move(source);
-  VertexAttribute uncertainty{AttributeType::float32, {}};
-  for (const double u : tooth.uncertainty) uncertainty.values.push_back(static_cast<float>(u));
-  file.vertex_attributes["uncertainty"] = std::move(uncertainty);
-  file.comments = {"whole tooth: scanned crown with a predicted root, not the patient's anatomy",
-                   "source: 0 scan, 1 transition, 2 predicted",
-                   "uncertainty: expected distance from the true surface, mm"};
-  return file;
 }
 
 /// The files of a candidate: the first has the names that the user gave, the others a number before the extension.
@@ -136,6 +122,9 @@ void run(const CompleteCommand& command) {
   std::vector<CompletedTooth> candidates;
   try {
     candidates = complete_candidates(crown.mesh, models, command.candidates, options, progress);
+  } catch (const InputError& error) {
+    clear_line(progress);
+    throw in_terms_of_file(error, crown);
   } catch (...) {
     clear_line(progress);
     throw;
@@ -150,7 +139,8 @@ void run(const CompleteCommand& command) {
     }
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       written.push_back(numbered(command.output, i));
-      save_mesh(written.back(), as_file(candidates[i]));
+      save_mesh(written.back(), tooth_file(candidates[i], crown));
+      refer_to_file(candidates[i].record, crown, command.output);
       if (command.report.empty()) continue;
       written.push_back(numbered(command.report, i));
       write_file_atomically(written.back(), completion_report(candidates[i], options, command.crown, sha256));
@@ -169,7 +159,7 @@ void run(const CompleteCommand& command) {
 void add_complete_command(CLI::App& app) {
   auto command = std::make_shared<CompleteCommand>();
   CLI::App* complete = app.add_subcommand("complete", "A whole tooth with a root from a scanned crown");
-  complete->add_option("CROWN", command->crown, "Crown mesh: .stl .ply .obj .off .vtp")->required();
+  complete->add_option("CROWN", command->crown, "Crown mesh: .stl .ply .obj .off .vtp .vtk, also .gz")->required();
   complete->add_option("-o,--output", command->output, "Where the tooth goes: .ply .stl .obj .glb")->required();
   complete->add_option("--fdi", command->fdi, "FDI number of the tooth, 11-48; without it the type is guessed");
   complete->add_option("--report", command->report, "Write the report (JSON) to this file");

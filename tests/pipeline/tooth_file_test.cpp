@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "rhizodont/tooth_file.hpp"
+
+#include "pipeline/product_models.hpp"
+
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rhizodont {
+namespace {
+
+/// A tooth of four vertices of which two are the crown's vertices 2 and 0.
+CompletedTooth small_tooth() {
+  CompletedTooth tooth;
+  tooth.mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+  tooth.source = {VertexSource::scan, VertexSource::scan, VertexSource::transition, VertexSource::predicted};
+  tooth.uncertainty = {0, 0, 0.1, 0.2};
+  CompletionRecord& record = tooth.record;
+  record.kept_vertices = {0, 2};
+  record.dropped_vertices = {{1, "cap"}, {3, "skirt"}};
+  record.repairs = {{"merged", {1}, {5}}};
+  record.promises.crown.dropped_vertices = {1, 3};
+  record.warnings = {"first"};
+  return tooth;
+}
+
+MeshFile crown_with(const std::map<std::string, VertexAttribute>& attributes) {
+  MeshFile crown;
+  crown.mesh.vertices.resize(4, Point::Zero());
+  crown.vertex_attributes = attributes;
+  return crown;
+}
+
+TEST(ToothFile, ColoursOfTheScanAreCarried) {
+  using enum AttributeType;
+  const MeshFile crown = crown_with({{"red", {uint8, {10, 20, 31, 40}}},
+                                     {"green", {float32, {0, 0.5, 1, 1}}},
+                                     {"blue", {uint8, {255, 0, 255, 0}}},
+                                     {"label", {int32, {1, 2, 3, 4}}}});
+  const MeshFile file = tooth_file(small_tooth(), crown);
+  EXPECT_EQ(file.vertex_attributes.at("red").values, (std::vector<double>{10, 31, 21, 21}));
+  EXPECT_EQ(file.vertex_attributes.at("green").values, (std::vector<double>{0, 255, 128, 128}));
+  EXPECT_EQ(file.vertex_attributes.at("blue").values, (std::vector<double>{255, 255, 255, 255}));
+  EXPECT_EQ(file.vertex_attributes.at("green").type, uint8);
+  EXPECT_EQ(file.vertex_attributes.at("source").values, (std::vector<double>{0, 0, 1, 2}));
+  EXPECT_FALSE(file.vertex_attributes.contains("label"));
+  EXPECT_EQ(file.vertex_attributes.size(), 5U);
+}
+
+TEST(ToothFile, WithoutColoursThereAreNone) {
+  using enum AttributeType;
+  for (const MeshFile& crown :
+       {crown_with({}), crown_with({{"red", {uint8, {1, 2, 3, 4}}}}),
+        crown_with(
+            {{"red", {float64, {9, 2, 3, 4}}}, {"green", {uint8, {1, 2, 3, 4}}}, {"blue", {uint8, {1, 2, 3, 4}}}})}) {
+    const MeshFile file = tooth_file(small_tooth(), crown);
+    EXPECT_EQ(file.vertex_attributes.size(), 2U);
+    EXPECT_EQ(file.comments.size(), 3U);
+  }
+}
+
+TEST(ToothFile, RecordsNameTheFilesOwnVertices) {
+  MeshFile crown = crown_with({});
+  crown.notes = {"welded"};
+  CompletionRecord record = small_tooth().record;
+  refer_to_file(record, crown, "a.ply");
+  EXPECT_EQ(record.kept_vertices, (std::vector<int>{0, 2}));  // the same numbers in mesh and file
+  EXPECT_EQ(record.warnings, (std::vector<std::string>{"welded", "first"}));
+  crown.file_vertices = {0, 10, 20, 30};
+  record = small_tooth().record;
+  refer_to_file(record, crown, "a.ply");
+  EXPECT_EQ(record.kept_vertices, (std::vector<int>{0, 20}));
+  EXPECT_EQ(record.dropped_vertices[0].vertex, 10);
+  EXPECT_EQ(record.dropped_vertices[1].vertex, 30);
+  EXPECT_EQ(record.repairs[0].vertices, std::vector<int>{10});
+  EXPECT_EQ(record.repairs[0].triangles, std::vector<int>{5});
+  EXPECT_EQ(record.promises.crown.dropped_vertices, (std::vector<int>{10, 30}));
+  EXPECT_EQ(in_terms_of_file(InputError("Edges (pairs of vertices).", {1, 3}), crown).elements(),
+            (std::vector<std::int64_t>{10, 30}));
+  EXPECT_EQ(in_terms_of_file(InputError("Cuts (pairs of triangles).", {1, 3}), crown).elements(),
+            (std::vector<std::int64_t>{1, 3}));
+}
+
+TEST(ToothFile, LostColoursAreSaid) {
+  using enum AttributeType;
+  const VertexAttribute part{uint8, {1, 2, 3, 4}};
+  const MeshFile crown = crown_with({{"red", part}, {"green", part}, {"blue", part}});
+  for (const auto& [output, said] : {std::pair("a.ply", false), {"a.PLY", false}, {"a.stl", true}, {"a.glb", true}}) {
+    CompletionRecord record;
+    refer_to_file(record, crown, output);
+    EXPECT_EQ(record.warnings.size(), said ? 1U : 0U) << output;
+  }
+}
+
+TEST(ToothFile, ACrownOfLooseTrianglesIsTheSameTooth) {
+  const MeshFile crown = load_mesh(test::source_folder / "samples" / "crown_34.ply");
+  std::string soup;
+  std::vector<Point> written;
+  for (const Triangle& t : crown.mesh.triangles)
+    for (const std::int32_t v : t) {
+      const Point& p = written.emplace_back(crown.mesh.vertices[static_cast<std::size_t>(v)]);
+      soup += fmt::format("v {} {} {}\n", p.x(), p.y(), p.z());
+    }
+  for (std::size_t t = 0; t < crown.mesh.triangles.size(); ++t)
+    soup += fmt::format("f {} {} {}\n", 3 * t + 1, 3 * t + 2, 3 * t + 3);
+  const MeshFile welded = read_mesh(soup, "crown.obj");
+  ASSERT_EQ(welded.mesh.vertices.size(), crown.mesh.vertices.size());
+  CompletedTooth tooth = complete_tooth(welded.mesh, test::models(), test::for_tooth(34));
+  refer_to_file(tooth.record, welded, "tooth.ply");
+  ASSERT_EQ(tooth.record.kept_vertices.size(), crown.mesh.vertices.size());
+  EXPECT_TRUE(std::is_sorted(tooth.record.kept_vertices.begin(), tooth.record.kept_vertices.end()));
+  for (std::size_t v = 0; v < tooth.record.kept_vertices.size(); ++v)
+    EXPECT_EQ(tooth.mesh.vertices[v], written[static_cast<std::size_t>(tooth.record.kept_vertices[v])]);
+}
+
+}  // namespace
+}  // namespace rhizodont
