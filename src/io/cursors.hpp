@@ -119,6 +119,15 @@ class ByteCursor {
   bool swap_;
 };
 
+/// The sentence for a word that should be a number.
+inline std::string no_number(std::string_view word) {
+  std::string with_point(word);
+  std::replace(with_point.begin(), with_point.end(), ',', '.');
+  const bool has_comma = with_point != word && parse_number<double>(with_point);
+  return fmt::format("'{:.30}' is not a number{}", word,
+                     has_comma ? ": it has a decimal comma; save the file with decimal points" : "");
+}
+
 /// Reads the three coordinates of a vertex, in any of the text formats; `fail(sentence)` does not return.
 template <class Fail>
 Point read_coordinates(TextCursor& words, const Fail& fail) {
@@ -126,7 +135,7 @@ Point read_coordinates(TextCursor& words, const Fail& fail) {
   for (double& coordinate : point) {
     const auto word = words.word();
     const auto value = parse_number<double>(word.value_or(""));
-    if (!value) fail(word ? fmt::format("'{:.30}' is not a number", *word) : "a vertex needs three coordinates");
+    if (!value) fail(word ? no_number(*word) : "a vertex needs three coordinates");
     if (!std::isfinite(*value)) fail("a coordinate is not a finite number");
     coordinate = *value;
   }

@@ -6,6 +6,7 @@
 #include "io/cursors.hpp"
 #include "io/face_list.hpp"
 #include "io/formats.hpp"
+#include "io/notes.hpp"
 
 #include <fmt/core.h>
 
@@ -29,10 +30,13 @@ class ObjReader {
         read_face(words);
       else if (keyword == "#MRGB")
         has_painted_colours_ = true;
+      else if (keyword == "vt" || keyword == "mtllib")
+        (keyword == "vt" ? has_texture_places_ : has_materials_) = true;
     }
     require_vertices_exist();
     add_colours(file_, colours_);
     if (has_painted_colours_) file_.notes.push_back("The colours painted on the vertices (#MRGB) are not read.");
+    if (has_texture_places_ && has_materials_) file_.notes.emplace_back(texture_note);
     faces_.move_to(file_);
     return std::move(file_);
   }
@@ -98,7 +102,7 @@ class ObjReader {
   std::vector<std::int32_t> polygon_;
   std::pair<std::int64_t, std::int64_t> largest_{-1, 0};  // vertex of a face, line
   std::vector<std::array<double, 3>> colours_;
-  bool has_painted_colours_ = false;
+  bool has_painted_colours_ = false, has_texture_places_ = false, has_materials_ = false;
   FaceList faces_;
   MeshFile file_;
 };

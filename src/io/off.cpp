@@ -5,6 +5,7 @@
 #include "io/cursors.hpp"
 #include "io/face_list.hpp"
 #include "io/formats.hpp"
+#include "io/notes.hpp"
 
 #include <fmt/core.h>
 
@@ -27,6 +28,7 @@ class OffReader {
     faces_.reserve(static_cast<std::size_t>(face_count));
     for (std::int64_t f = 0; f < face_count; ++f) read_face(f, face_count);
     add_colours(file_, colours_);
+    if (has_face_colours_) file_.notes.emplace_back(triangle_colours_note);
     faces_.move_to(file_);
     return std::move(file_);
   }
@@ -119,13 +121,14 @@ class OffReader {
         fail(fmt::format("vertex {} does not exist", *v));
       polygon_.push_back(to_index(*v));
     }
+    has_face_colours_ |= words.word().has_value();
     faces_.add_polygon(polygon_);
   }
 
   TextCursor cursor_;
   std::int64_t line_ = 1;
   std::vector<std::int32_t> polygon_;
-  bool has_colours_ = false;
+  bool has_colours_ = false, has_face_colours_ = false;
   std::vector<std::array<double, 3>> colours_;
   FaceList faces_;
   MeshFile file_;

@@ -5,6 +5,7 @@
 #include "io/cursors.hpp"
 #include "io/face_list.hpp"
 #include "io/formats.hpp"
+#include "io/notes.hpp"
 
 #include <fmt/core.h>
 
@@ -206,6 +207,9 @@ class BodyReader {
 
   MeshFile read() {
     file_.comments = header_.comments;
+    if (std::any_of(header_.comments.begin(), header_.comments.end(),
+                    [](const std::string& comment) { return comment.starts_with("TextureFile"); }))
+      file_.notes.emplace_back(texture_note);
     for (const Element& element : header_.elements) {
       require_room(element);
       if (element.name == "vertex") {
@@ -348,7 +352,7 @@ class BodyReader {
   void note_colours(const Element& element) {
     if (std::any_of(element.properties.begin(), element.properties.end(),
                     [](const Property& p) { return p.name == "red" || p.name == "diffuse_red"; }))
-      file_.notes.emplace_back("The file's colours per triangle are not read.");
+      file_.notes.emplace_back(triangle_colours_note);
   }
 
   static bool is_corner_list(const Property& property) {

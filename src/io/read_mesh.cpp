@@ -41,6 +41,13 @@ std::string format_hint(fs::path name) {
   return hint.starts_with('.') ? hint : "." + hint;
 }
 
+/// A sentence that quotes a file may hold any bytes.
+std::string printable(std::string sentence) {
+  for (char& c : sentence)
+    if (c < ' ' || c > '~') c = '?';
+  return sentence;
+}
+
 void take_out_repeated_corners(MeshFile& file) {
   std::vector<Triangle>& triangles = file.mesh.triangles;
   std::size_t kept = 0;
@@ -93,15 +100,19 @@ void finish_reading(MeshFile& file) {
 }
 
 MeshFile read_mesh(std::string_view bytes, const std::filesystem::path& name_or_format_hint) {
-  if (bytes.empty()) throw InputError("the file is empty");
-  Unwrapped content;
-  content.bytes = bytes;
-  if (!is_exact_binary_stl(bytes)) unwrap(bytes, content);
-  if (content.bytes.empty()) throw InputError("the file is empty");
-  MeshFile file = read_as(recognise(content.bytes, format_hint(name_or_format_hint)), content.bytes);
-  file.notes.insert(file.notes.begin(), content.notes.begin(), content.notes.end());
-  finish_reading(file);
-  return file;
+  try {
+    if (bytes.empty()) throw InputError("the file is empty");
+    Unwrapped content;
+    content.bytes = bytes;
+    if (!is_exact_binary_stl(bytes)) unwrap(bytes, content);
+    if (content.bytes.empty()) throw InputError("the file is empty");
+    MeshFile file = read_as(recognise(content.bytes, format_hint(name_or_format_hint)), content.bytes);
+    file.notes.insert(file.notes.begin(), content.notes.begin(), content.notes.end());
+    finish_reading(file);
+    return file;
+  } catch (const InputError& error) {
+    throw InputError(printable(error.what()), error.elements());
+  }
 }
 
 MeshFile load_mesh(const std::filesystem::path& path) {

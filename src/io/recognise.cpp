@@ -225,7 +225,7 @@ bool is_headerless_off(std::string_view text) {
 }
 
 bool is_obj(std::string_view text, bool named_so) {
-  ContentLines lines(text.substr(0, std::size_t{1} << 20));
+  ContentLines lines(text);
   std::vector<double> numbers;
   while (const auto line = lines.next()) {
     TextCursor words(*line);
@@ -290,7 +290,8 @@ bool is_text(std::string_view bytes) {
 MeshFormat recognise(std::string_view bytes, std::string_view ending) {
   if (is_exact_binary_stl(bytes)) return MeshFormat::stl;
   refuse_known_others(bytes);
-  if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return MeshFormat::ply;
+  if (bytes.starts_with("ply") && bytes.size() > 3 && " \t\r\n"sv.find(bytes[3]) != std::string_view::npos)
+    return MeshFormat::ply;
   if (lower(bytes.substr(0, 18)) == "# vtk datafile ver") return MeshFormat::vtk;
   // raw data may follow after these beginnings
   if (bytes[bytes.find_first_not_of(" \t\r\n\v\f")] == '<' && is_text(bytes.substr(0, 64)))

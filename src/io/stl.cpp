@@ -56,8 +56,7 @@ MeshFile read_binary(std::string_view bytes, std::size_t count) {
     }
     cursor.skip(2);
   }
-  if (bytes.substr(0, 80).find("COLOR=") != std::string_view::npos)
-    file.notes.push_back("The file's colours per triangle are not read.");
+  if (bytes.substr(0, 80).find("COLOR=") != std::string_view::npos) file.notes.emplace_back(triangle_colours_note);
   return file;
 }
 

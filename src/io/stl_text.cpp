@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // STL as text. No two programs write it alike, so whatever can only mean one thing is taken for it.
 #include "io/cursors.hpp"
+#include "io/notes.hpp"
 #include "io/recognise.hpp"
 #include "io/stl.hpp"
 #include "io/weld.hpp"
@@ -46,7 +47,7 @@ class StlTextReader {
       }
     }
     if (has_junk_) file_.notes.push_back("Text after the end of the mesh was passed over.");
-    if (has_colours_) file_.notes.push_back("The file's colours per triangle are not read.");
+    if (has_colours_) file_.notes.emplace_back(triangle_colours_note);
     if (!ended_) file_.notes.push_back("The file does not end with 'endsolid': look whether something is missing.");
     return std::move(file_);
   }
@@ -140,7 +141,7 @@ class StlTextReader {
         throw InputError(fmt::format("line {}: the file ends in the middle of a triangle", cursor_.line()),
                          {cursor_.line()});
       const auto value = parse_number<float>(*word);
-      if (!value) fail(*word, "a number");
+      if (!value) throw InputError(fmt::format("line {}: {}", cursor_.line(), no_number(*word)), {cursor_.line()});
       if (!std::isfinite(*value))
         throw InputError(fmt::format("line {}: a coordinate is not a finite number", cursor_.line()), {cursor_.line()});
       x = static_cast<double>(*value);

@@ -6,6 +6,7 @@
 #include "io/cursors.hpp"
 #include "io/face_list.hpp"
 #include "io/formats.hpp"
+#include "io/notes.hpp"
 #include "io/vtk_numbers.hpp"
 
 #include <fmt/core.h>
@@ -83,6 +84,7 @@ class VtkReader {
         throw InputError(fmt::format("line {}: {} is not known in a VTK file", line, shown(*keyword)), {line});
       }
     }
+    if (has_cell_colours_) file_.notes.emplace_back(triangle_colours_note);
     faces_.move_to(file_);
     return std::move(file_);
   }
@@ -294,13 +296,14 @@ class VtkReader {
     const auto word = cursor_.word();
     if (!word) fail("the file is cut off");
     TextCursor words(cursor_.rest_of_line());
-    if (same_word(*word, "metadata")) {
-      read_structure(*word, words);
-      return read_field_array();
-    }
     const std::uint64_t components = count(words, "components"), tuples = count(words, "values");
-    if (components == 0 || tuples == 0) return;
-    take(decoded(*word), type(words), tuples, components);
+    if (components > 0 && tuples > 0) take(decoded(*word), type(words), tuples, components);
+    // what is said about the array may follow it, before the next one
+    while (next_is("metadata")) {
+      cursor_.word();
+      TextCursor rest(cursor_.rest_of_line());
+      read_structure("metadata", rest);
+    }
   }
 
   // Values beside the mesh are kept where they fit, and are no reason to refuse it where they do not.
@@ -309,6 +312,7 @@ class VtkReader {
     std::vector<double> numbers = values(of, tuples, components);
     // bytes in threes or fours are colours too
     const bool is_colour = (components == 3 || components == 4) && (called_colour || of.number == VtkNumber::uint8);
+    has_cell_colours_ |= !of_points_ && is_colour;
     if (!of_points_ || numbers.empty() || of.kind != ArrayType::Kind::number || (components != 1 && !is_colour)) return;
     if (tuples != file_.mesh.vertices.size()) {
       file_.notes.push_back(
@@ -324,7 +328,7 @@ class VtkReader {
   TextCursor cursor_;
   bool binary_ = false;
   std::uint64_t tuples_ = 0;
-  bool of_points_ = false;
+  bool of_points_ = false, has_cell_colours_ = false;
   FaceList faces_;
   MeshFile file_;
 };

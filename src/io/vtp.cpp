@@ -6,10 +6,12 @@
 #include "io/cursors.hpp"
 #include "io/face_list.hpp"
 #include "io/formats.hpp"
+#include "io/notes.hpp"
 #include "io/vtp_arrays.hpp"
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace rhizodont {
@@ -77,6 +79,8 @@ class PieceReader {
     read_cells(piece.child("Polys"), false);
     read_cells(piece.child("Strips"), true);
     if (with_attributes) read_attributes(piece.child("PointData"));
+    const auto cell_data = piece.child("CellData").children("DataArray");
+    if (std::any_of(cell_data.begin(), cell_data.end(), is_colour)) file_.notes.emplace_back(triangle_colours_note);
   }
 
  private:
@@ -119,14 +123,17 @@ class PieceReader {
     }
   }
 
+  static bool is_colour(const pugi::xml_node& node) {
+    const int components = node.attribute("NumberOfComponents").as_int(1);
+    return (components == 3 || components == 4) && std::string_view(node.attribute("type").as_string()) == "UInt8";
+  }
+
   // Values beside the mesh are no reason to refuse it.
   void read_attributes(const pugi::xml_node& data) {
     for (const pugi::xml_node& node : data.children("DataArray")) {
       const std::string name = node.attribute("Name").as_string();
       const int components = node.attribute("NumberOfComponents").as_int(1);
-      const bool is_colour =
-          (components == 3 || components == 4) && std::string_view(node.attribute("type").as_string()) == "UInt8";
-      if (name.empty() || (components != 1 && !is_colour)) continue;
+      if (name.empty() || (components != 1 && !is_colour(node))) continue;
       try {
         take_attribute(name, read_vtk_array(node, storage_));
       } catch (const InputError& error) {

@@ -318,6 +318,34 @@ TEST(Dress, ConcavePolygonsAreTheSameInEveryFormat) {
     EXPECT_EQ(read_mesh(text, "").mesh.triangles, off.mesh.triangles) << text;
 }
 
+// Damaged files end in an InputError or a valid mesh, never in anything else, and their sentences can be printed.
+TEST(Dress, RandomDamageIsSurvived) {
+  const TriangleMesh mesh = worn_mesh();
+  std::uint64_t state = 2026;
+  const auto random = [&](std::size_t below) {
+    state = state * 6364136223846793005ULL + 1442695040888963407ULL;
+    return static_cast<std::size_t>(state >> 33) % below;
+  };
+  for (const std::string& whole : {as_stl_text(mesh), as_off(mesh), as_obj(mesh), as_ply_text(mesh), as_vtk_text(mesh),
+                                   as_vtp_text(mesh), as_binary_vtk(mesh), as_binary_stl(mesh), in_gzip(as_obj(mesh)),
+                                   in_utf16(as_off(mesh), std::endian::big, true)})
+    for (int trial = 0; trial < 300; ++trial) {
+      std::string damaged = whole;
+      // half of the damage is in the head
+      for (std::size_t k = 0; k <= random(4); ++k)
+        damaged[random(k % 2 == 0 ? damaged.size() : 300)] = static_cast<char>(random(256));
+      if (trial % 3 == 0) damaged.resize(1 + random(damaged.size()));
+      try {
+        const MeshFile found = read_mesh(damaged, trial % 2 == 0 ? "a.stl" : "a.vtk");
+        for (const Triangle& t : found.mesh.triangles)
+          for (const std::int32_t v : t) ASSERT_LT(static_cast<std::size_t>(v), found.mesh.vertices.size());
+        for (const Point& p : found.mesh.vertices) ASSERT_TRUE(p.allFinite());
+      } catch (const InputError& error) {
+        for (const char c : std::string(error.what())) ASSERT_TRUE(c >= ' ' && c < 127) << error.what();
+      }
+    }
+}
+
 TEST(Dress, PackedFilesThatAreNoneAreRefused) {
   const std::string packed = in_gzip(as_off(worn_mesh()));
   for (const std::size_t size :

@@ -45,7 +45,7 @@ TEST(Obj, BadFilesAreRefusedWithTheirLine) {
   expect_refused("a.obj", "v 0 0\n" + vertices + "f 1 2 3\n", "line 1: a vertex needs three coordinates");
   expect_refused("a.obj", vertices + "v 0 nan 0\nf 1 2 3\n", "line 4: a coordinate is not a finite number");
   expect_refused("a.obj", vertices + "v 0 1e999 0\nf 1 2 3\n", "line 4: a coordinate is not a finite number");
-  expect_refused("a.obj", vertices + "v 0 0,5 0\nf 1 2 3\n", "line 4: '0,5' is not a number");
+  expect_refused("a.obj", vertices + "v 0 0,5 0\nf 1 2 3\n", "line 4: '0,5' is not a number: it has a decimal comma");
 }
 
 TEST(Obj, RoundTripKeepsDoublesAndFloatsToTheBit) {
@@ -83,6 +83,12 @@ TEST(Obj, ColoursOfEveryVertexAreRead) {
   const MeshFile some = load_bytes("a.obj", "v 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0 1\nf 1 2 3\n");
   EXPECT_TRUE(some.vertex_attributes.empty());
   EXPECT_TRUE(test::notes_hold(some, "Not every vertex has a colour"));
+}
+
+TEST(Obj, TexturesAreSaid) {
+  const std::string square_text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n";
+  EXPECT_TRUE(test::notes_hold(load_bytes("a.obj", "mtllib a.mtl\n" + square_text), "texture is not read"));
+  EXPECT_TRUE(load_bytes("a.obj", square_text).notes.empty());
 }
 
 TEST(Off, ColoursOfVerticesAreRead) {
