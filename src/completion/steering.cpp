@@ -5,7 +5,7 @@
 // solid primitives", 1984, along a centre line whose direction is given by depth.
 #include "completion/steering.hpp"
 
-#include "mesh/adjacency.hpp"
+#include "mesh/border_pieces.hpp"
 #include "mesh/smooth_functions.hpp"
 #include "rhizodont/error.hpp"
 
@@ -27,7 +27,7 @@ void require_angle(double degrees, double most, const char* name) {
 
 /// Where the root starts and which way is which, in the frame of the crown's file.
 struct RootFrame {
-  Point start = Point::Zero();  ///< middle of the border, at the crown's lowest level
+  Point start = Point::Zero();  ///< middle of the base, at the crown's lowest level
   Eigen::Vector3d down, distal, lingual;
 };
 
@@ -40,14 +40,11 @@ RootFrame root_frame(const TriangleMesh& crown, const CanonicalFrame& frame, int
   double lowest = std::numeric_limits<double>::lowest();
   for (const Triangle& t : crown.triangles)
     for (const int v : t) lowest = std::max(lowest, crown.vertices[static_cast<std::size_t>(v)].dot(root.down));
-  double count = 0;
-  for (const auto& loop : border_loops(crown))
-    for (const int v : loop) {
-      root.start += crown.vertices[static_cast<std::size_t>(v)];
-      ++count;
-    }
-  if (count == 0) throw InputError("A closed crown has no border where a root could start.");
-  root.start /= count;
+  const std::vector<BorderPiece> border = border_pieces(crown);
+  if (border.empty()) throw InputError("A closed crown has no border where a root could start.");
+  const std::vector<int>& base = border[base_piece(border)].vertices;
+  for (const int v : base) root.start += crown.vertices[static_cast<std::size_t>(v)];
+  root.start /= static_cast<double>(base.size());
   root.start += (lowest - root.start.dot(root.down)) * root.down;
   return root;
 }

@@ -9,6 +9,7 @@
 
 #include "fusion/fill_holes.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/border_pieces.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
@@ -38,14 +39,16 @@ class RootPatch {
     std::sort(crown_half_edges_.begin(), crown_half_edges_.end());
     for (const HalfEdge& h : crown_half_edges_)
       if (!is_of_crown({h.second, h.first})) border_half_edges_.push_back(h);
-    const auto loops = border_loops(crown);
-    outer_ = *std::max_element(loops.begin(), loops.end(),
-                               [&](const auto& x, const auto& y) { return loop_length(x) < loop_length(y); });
-    const std::set<int> outer(outer_.begin(), outer_.end());
+    const std::vector<BorderPiece> pieces = border_pieces(crown);
+    const BorderPiece& base = pieces[base_piece(pieces)];
+    base_ = base.half_edges;
+    std::vector<bool> at_base(sites_.size(), false);
+    for (const int v : base.vertices) at_base[static_cast<std::size_t>(v)] = true;
     const int first_root = joining.crown_vertices + joining.steiner_points;
     for (const Triangle& t : joining.triangles) {
       const bool has_root = std::any_of(t.begin(), t.end(), [&](int v) { return v >= first_root; });
-      const bool fits = std::all_of(t.begin(), t.end(), [&](int v) { return v >= first_root || outer.contains(v); });
+      const bool fits = std::all_of(t.begin(), t.end(),
+                                    [&](int v) { return v >= first_root || at_base[static_cast<std::size_t>(v)]; });
       if (has_root && fits && fits_crown(t)) triangles_.push_back(t);
     }
   }
@@ -75,8 +78,7 @@ class RootPatch {
         if (is_of_crown({b, a})) return;
     double best = std::numeric_limits<double>::max();
     HalfEdge ours, crowns;
-    for (std::size_t i = 0; i < outer_.size(); ++i) {
-      const HalfEdge c{outer_[i], outer_[(i + 1) % outer_.size()]};
+    for (const HalfEdge& c : base_) {
       for (const HalfEdge& r : open) {
         const double d = distance(c.first, r.second) + distance(c.second, r.first);
         if (d >= best) continue;
@@ -127,12 +129,6 @@ class RootPatch {
 
   double distance(int a, int b) const {
     return (sites_[static_cast<std::size_t>(a)] - sites_[static_cast<std::size_t>(b)]).norm();
-  }
-
-  double loop_length(const std::vector<int>& loop) const {
-    double length = 0;
-    for (std::size_t i = 0; i < loop.size(); ++i) length += distance(loop[i], loop[(i + 1) % loop.size()]);
-    return length;
   }
 
   /// No edge of the triangle repeats a half-edge of the crown or lies inside the crown.
@@ -250,7 +246,7 @@ class RootPatch {
   const std::vector<Point>& sites_;
   std::vector<HalfEdge> crown_half_edges_;   // sorted
   std::vector<HalfEdge> border_half_edges_;  // those of the crown without a triangle on their other side, sorted
-  std::vector<int> outer_;                   // the border loop that the root continues
+  std::vector<HalfEdge> base_;               // the crown's border that the root continues
   std::vector<Triangle> triangles_;
 };
 

@@ -8,6 +8,7 @@
 #include "fusion/transition.hpp"
 
 #include "fusion/fitted_patch.hpp"
+#include "mesh/edge_distance.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/self_intersection.hpp"
 
@@ -15,43 +16,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <queue>
+#include <numeric>
 
 namespace rhizodont {
 namespace {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
-
-/// Distance along edges from the crown, up to `limit`; infinity beyond.
-std::vector<double> distance_from_crown(const RestoredTooth& tooth, double limit) {
-  const std::size_t n = tooth.mesh.vertices.size();
-  std::vector<std::vector<int>> around(n);
-  for (const Triangle& t : tooth.mesh.triangles)
-    for (std::size_t i = 0; i < 3; ++i) around[static_cast<std::size_t>(t[i])].push_back(t[(i + 1) % 3]);
-  std::vector<double> distance(n, std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, int>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (int v = 0; v < tooth.crown_vertices; ++v) {
-    distance[static_cast<std::size_t>(v)] = 0;
-    queue.push({0, v});
-  }
-  while (!queue.empty()) {
-    const auto [d, v] = queue.top();
-    queue.pop();
-    if (d > distance[static_cast<std::size_t>(v)]) continue;
-    for (const int w : around[static_cast<std::size_t>(v)]) {
-      const double there =
-          d +
-          (tooth.mesh.vertices[static_cast<std::size_t>(v)] - tooth.mesh.vertices[static_cast<std::size_t>(w)]).norm();
-      if (there >= distance[static_cast<std::size_t>(w)] || there > limit) continue;
-      distance[static_cast<std::size_t>(w)] = there;
-      queue.push({there, w});
-    }
-  }
-  return distance;
-}
 
 /// The band with the two rings of vertices around it that the equation looks at.
 struct Band {
@@ -279,7 +250,9 @@ double chosen_width(const RestoredTooth& tooth, const TransitionOptions& options
 Transition smooth_transition(RestoredTooth& tooth, const TransitionOptions& options) {
   Transition result;
   result.width = chosen_width(tooth, options);
-  const auto distance = distance_from_crown(tooth, result.width);
+  std::vector<int> crown(static_cast<std::size_t>(tooth.crown_vertices));
+  std::iota(crown.begin(), crown.end(), 0);
+  const auto distance = distances_along_edges(tooth.mesh, crown, result.width);
   for (std::size_t v = static_cast<std::size_t>(tooth.crown_vertices); v < distance.size(); ++v)
     if (std::isfinite(distance[v])) result.vertices.push_back(static_cast<int>(v));
   const Eigen::MatrixXd target =

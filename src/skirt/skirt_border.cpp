@@ -7,10 +7,11 @@
 #include "skirt/skirt_border.hpp"
 
 #include "mesh/adjacency.hpp"
+#include "mesh/border_pieces.hpp"
 #include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/handles.hpp"
 #include "rhizodont/error.hpp"
-#include "skirt/border.hpp"
 #include "skirt/minimum_cut.hpp"
 
 #include <algorithm>
@@ -122,20 +123,6 @@ void remove_islands(const TriangleMesh& mesh, const std::vector<bool>& outer, co
   }
 }
 
-/// Handles of the kept part: a disc with h of them and k further holes has V - E + F = 1 - 2 h - k.
-int handles(const TriangleMesh& mesh, const std::vector<bool>& keep) {
-  const Submesh part = submesh(mesh, keep);
-  if (part.mesh.triangles.empty()) return 0;
-  try {
-    const auto count = [](std::size_t size) { return static_cast<int>(size); };
-    const int euler =
-        count(part.mesh.vertices.size()) - count(edge_table(part.mesh).size()) + count(part.mesh.triangles.size());
-    return (2 - euler - count(border_loops(part.mesh).size())) / 2;
-  } catch (const InputError&) {
-    return 0;  // loops touch: what hangs on the rest by a vertex is taken off later
-  }
-}
-
 std::vector<bool> cut(const std::vector<float>& confidence, const std::vector<double>& areas,
                       const std::vector<CutEdge>& edges, double bias) {
   std::vector<double> cost_tooth, cost_skirt;
@@ -162,14 +149,16 @@ std::vector<bool> tooth_triangles(const TriangleMesh& crown, const std::vector<f
   const std::vector<double> areas = vertex_areas(crown);
   const std::vector<CutEdge> edges = cut_edges(crown, options);
   std::vector<bool> outer(crown.vertices.size(), false);
-  for (const int v : crown_border(crown).outer) outer[static_cast<std::size_t>(v)] = true;
+  if (const std::vector<BorderPiece> border = border_pieces(crown); !border.empty())
+    for (const int v : border[base_piece(border)].vertices) outer[static_cast<std::size_t>(v)] = true;
+  const EdgeTable table = edge_table(crown);
   std::vector<bool> keep;
   for (double bias = log_odds(options.threshold), strictest = bias + 3; bias <= strictest; bias += 1) {
     std::vector<bool> is_tooth = cut(confidence, areas, edges, bias);
     remove_islands(crown, outer, areas, is_tooth);
     const std::vector<bool> stricter = triangles_of(crown, is_tooth);
     if (keep.empty()) keep = stricter;
-    if (handles(crown, stricter) > 0) continue;
+    if (handle_count(crown, table, stricter) > 0) continue;
     keep = stricter;
     break;
   }

@@ -6,12 +6,12 @@
 //   begins with a crease.
 #include "skirt/skirt_features.hpp"
 
+#include "mesh/border_pieces.hpp"
 #include "mesh/geometry.hpp"
 #include "operators/eigenbasis.hpp"
 #include "operators/geodesic.hpp"
 #include "operators/surface_operators.hpp"
 #include "rhizodont/error.hpp"
-#include "skirt/border.hpp"
 
 #include <Eigen/Geometry>
 
@@ -76,10 +76,14 @@ SurfaceSample skirt_features(const TriangleMesh& crown, int eigenvectors) {
   const Eigen::MatrixX3d positions = positions_in_units(crown, operators);
   const Eigen::VectorXd fine = curvature(operators, positions, 0.35 / operators.unit);
   const Eigen::VectorXd coarse = curvature(operators, positions, 0.9 / operators.unit);
-  const CrownBorder border = crown_border(crown);
-  if (border.all.empty()) throw InputError("The crown is closed: a skirt is looked for at a border.");
-  const std::vector<double> to_border = geodesic_distances(crown, border.all);
-  const std::vector<double> to_outer = geodesic_distances(crown, border.outer);
+  const std::vector<BorderPiece> border = border_pieces(crown);
+  if (border.empty()) throw InputError("The crown is closed: a skirt is looked for at a border.");
+  std::vector<int> at_border;
+  for (const BorderPiece& piece : border)
+    at_border.insert(at_border.end(), piece.vertices.begin(), piece.vertices.end());
+  std::sort(at_border.begin(), at_border.end());
+  const std::vector<double> to_border = geodesic_distances(crown, at_border);
+  const std::vector<double> to_outer = geodesic_distances(crown, border[base_piece(border)].vertices);
   const Eigen::Matrix3d turn = upright(crown);
   const Point centre = area_centroid(crown);
 

@@ -6,6 +6,7 @@
 #include "common/hostile_crowns.hpp"
 
 #include "mesh/adjacency.hpp"
+#include "mesh/border_pieces.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/surface_mesh.hpp"
 
@@ -97,16 +98,14 @@ TriangleMesh resized_to(const TriangleMesh& mesh, std::size_t vertices) {
 }
 
 TriangleMesh capped(const TriangleMesh& crown) {
-  const auto loops = border_loops(crown);
-  const auto longest =
-      std::max_element(loops.begin(), loops.end(), [](const auto& x, const auto& y) { return x.size() < y.size(); });
+  const std::vector<BorderPiece> border = border_pieces(crown);
+  const BorderPiece& base = border[base_piece(border)];
   TriangleMesh closed = crown;
   Point centre = Point::Zero();
-  for (const int v : *longest) centre += crown.vertices[static_cast<std::size_t>(v)];
+  for (const int v : base.vertices) centre += crown.vertices[static_cast<std::size_t>(v)];
   const auto apex = static_cast<std::int32_t>(closed.vertices.size());
-  closed.vertices.push_back(centre / static_cast<double>(longest->size()));
-  for (std::size_t i = 0; i < longest->size(); ++i)
-    closed.triangles.push_back({(*longest)[(i + 1) % longest->size()], (*longest)[i], apex});
+  closed.vertices.push_back(centre / static_cast<double>(base.vertices.size()));
+  for (const auto& [a, b] : base.half_edges) closed.triangles.push_back({b, a, apex});
   return closed;
 }
 
