@@ -19,6 +19,11 @@ namespace {
 
 namespace processing = CGAL::Polygon_mesh_processing;
 
+/// Triangles are looked for among the edges of a Delaunay triangulation of the hole's border. Where those close no
+/// hole, all that its border vertices span are tried, at a cost of the third power of their number: up to so many
+/// vertices.
+constexpr std::size_t most_vertices_of_full_search = 400;
+
 std::vector<std::int64_t> hole_vertices(const SurfaceMesh& mesh, SurfaceMesh::Halfedge_index border) {
   std::vector<std::int64_t> ids;
   for (const auto h : CGAL::halfedges_around_face(border, mesh)) ids.push_back(static_cast<int>(mesh.target(h)));
@@ -42,7 +47,8 @@ FilledMesh fill_holes(const TriangleMesh& mesh) {
     const auto ids = hole_vertices(surface, border);
     std::vector<SurfaceMesh::Face_index> faces;
     processing::triangulate_hole(surface, border, std::back_inserter(faces),
-                                 CGAL::parameters::use_delaunay_triangulation(true));
+                                 CGAL::parameters::use_delaunay_triangulation(true).do_not_use_cubic_algorithm(
+                                     ids.size() > most_vertices_of_full_search));
     if (faces.empty())
       throw NoResultError("A gap between the crown and its root could not be closed (ids of its vertices).", ids);
     for (const auto face : faces) result.mesh.triangles.push_back(to_triangle(surface, face));

@@ -17,7 +17,8 @@ constexpr double worthwhile = 1e-3;  // radians by which an operation has to imp
 
 class Mender {
  public:
-  Mender(FittedPatch& patch, double crown_weight) : patch_(patch), crown_weight_(crown_weight) {}
+  Mender(FittedPatch& patch, double crown_weight, MendingBudget& budget)
+      : patch_(patch), crown_weight_(crown_weight), budget_(budget) {}
 
   /// Works on the triangles with an angle below the bound, worst first; returns the number of operations.
   int round(double bound) {
@@ -30,7 +31,7 @@ class Mender {
     std::sort(bad.begin(), bad.end());
     int done = 0;
     for (const auto& [angle, h] : bad)
-      if (mesh().is_alive(h) && angle_at(h) < bound && improve(h)) ++done;
+      if (budget_.places > 0 && mesh().is_alive(h) && angle_at(h) < bound && improve(h)) ++done;
     return done;
   }
 
@@ -113,7 +114,7 @@ class Mender {
       const int v = mesh().from(k);
       if (mesh().is_fixed(v)) continue;
       for (double step = 0.4; step > 0.03; step *= 0.5)
-        while (improve_by_move(v, step * patch_.size(v))) moved = true;
+        while (budget_.places > 0 && improve_by_move(v, step * patch_.size(v))) moved = true;
     }
     return moved;
   }
@@ -130,6 +131,7 @@ class Mender {
         const Eigen::Vector3d along = patch_.point(w) - here;
         const double length = along.norm();
         if (!(length > 0)) continue;
+        --budget_.places;
         const SurfacePlace place = patch_.fit(v, here + sign * std::min(step / length, 0.5) * along);
         double smallest = 4 * crown_weight_;
         mesh().around(
@@ -146,6 +148,7 @@ class Mender {
   /// Splits the longest edge where the two new vertices beside it would see better angles, and always where it joins
   /// two border vertices: without a vertex of its own such a triangle has the border's angles.
   bool improve_by_split(int h) {
+    if (budget_.splits <= 0) return false;
     int longest = -1;
     double length = 0;
     for (const int k : {h, PatchMesh::next(h), PatchMesh::previous(h)}) {
@@ -168,17 +171,19 @@ class Mender {
       if (after < std::min(angle_at(longest), angle_at(g)) + worthwhile) return false;
     }
     patch_.split(longest);
+    --budget_.splits;
     return true;
   }
 
   FittedPatch& patch_;
   double crown_weight_;
+  MendingBudget& budget_;
 };
 
 }  // namespace
 
-int mend_angles(FittedPatch& patch, double least_angle, int rounds, double crown_weight) {
-  Mender mender(patch, crown_weight);
+int mend_angles(FittedPatch& patch, double least_angle, int rounds, MendingBudget& budget, double crown_weight) {
+  Mender mender(patch, crown_weight, budget);
   int done = 0;
   for (int round = 0; round < rounds; ++round) {
     const int now = mender.round(least_angle);

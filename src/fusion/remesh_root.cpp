@@ -135,6 +135,7 @@ RootRemeshing remesh_root(RestoredTooth& tooth, const SurfaceWalk& guiding_surfa
                           const std::vector<Point>& frozen_centres, double frozen_radius,
                           const RemeshRootOptions& options) {
   FittedPatch patch(tooth, guiding_surface, lengths);
+  const auto triangles = static_cast<double>(tooth.mesh.triangles.size()) - tooth.crown_triangles;
   patch.freeze(frozen_centres, frozen_radius);
   RootRemeshing done;
   for (int i = 0; i < options.iterations; ++i) {
@@ -149,11 +150,13 @@ RootRemeshing remesh_root(RestoredTooth& tooth, const SurfaceWalk& guiding_surfa
   }
   done.flips += flip_to_delaunay(patch);
   constexpr double radians = std::numbers::pi / 180;
+  MendingBudget budget{static_cast<std::int64_t>(options.mending_splits * triangles),
+                       static_cast<std::int64_t>(options.mending_places * triangles)};
   for (int i = 0; i < options.mending_passes; ++i) {
-    done.mended += mend_angles(patch, options.least_angle * radians, options.mending_rounds);
+    done.mended += mend_angles(patch, options.least_angle * radians, options.mending_rounds, budget);
     if (smallest_angles_suffice(patch, options)) break;
     // Triangles that touch the crown have less to promise: what they can spare is given to those beside them.
-    done.mended += mend_angles(patch, 1.1 * options.inner_angle * radians, options.mending_rounds,
+    done.mended += mend_angles(patch, 1.1 * options.inner_angle * radians, options.mending_rounds, budget,
                                options.inner_angle / options.border_angle);
     if (smallest_angles_suffice(patch, options)) break;
     // What no single operation mends may be mended from a slightly different start.

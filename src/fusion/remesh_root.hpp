@@ -19,8 +19,10 @@ struct RemeshRootOptions {
   int mending_rounds = 12;  ///< >= 0
   double inner_angle =
       21;  ///< degrees: mending starts anew from relaxed vertices if an angle is left smaller than this,
-  double border_angle = 6;  ///< or than this in a triangle that touches the crown,
-  int mending_passes = 3;   ///< at most so often, >= 0
+  double border_angle = 6;       ///< or than this in a triangle that touches the crown,
+  int mending_passes = 3;        ///< at most so often, >= 0
+  double mending_splits = 0.25;  ///< >= 0: edges that mending may split, per new triangle that there was before
+  double mending_places = 40;    ///< >= 0: places for vertices that it may try, likewise
 };
 
 /// What was done to the root's triangles.
