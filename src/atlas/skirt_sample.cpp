@@ -187,7 +187,7 @@ SkirtSample finished(const Scan& scan, RandomStream& random) {
   SkirtSample sample;
   sample.mesh = std::move(part.mesh);
   for (const int v : part.old_vertices) sample.is_tooth.push_back(scan.is_tooth[static_cast<std::size_t>(v)]);
-  const bool mirror = random.chance(0.5);
+  const bool mirror = sample.mirrored = random.chance(0.5);
   for (Point& p : sample.mesh.vertices) {
     if (mirror) p.x() = -p.x();
     p = nearest_float(p);

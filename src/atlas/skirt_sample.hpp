@@ -26,6 +26,7 @@ struct SkirtSample {
   std::vector<std::uint8_t> is_tooth;  ///< per vertex: 1 tooth, 0 skirt
   int type = 0;                        ///< 0..15
   bool has_skirt = false;              ///< one was added (it may have been cut off again)
+  bool mirrored = false;               ///< to the right side of the mouth; types are those of the left
 };
 
 /// Makes crown number `seed`: a tooth of the families, cut along its gum line, mirrored half of the time, with what a

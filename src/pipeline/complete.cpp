@@ -14,6 +14,7 @@
 #include "mesh/geometry.hpp"
 #include "pipeline/fitted_surface.hpp"
 #include "pipeline/guiding_cloud.hpp"
+#include "pipeline/missed_promise.hpp"
 #include "pipeline/models.hpp"
 #include "pipeline/stage_clock.hpp"
 #include "pipeline/take_crown.hpp"
@@ -198,6 +199,9 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   std::fill_n(tooth.source.begin(), crown.old_vertices.size(), VertexSource::scan);
   for (const int v : fused.transition.vertices) tooth.source[static_cast<std::size_t>(v)] = VertexSource::transition;
   record.promises = prove_promises(input, tooth.mesh, record.repairs);
+  for (std::string& missed : where_promise_three_is_missed(tooth.mesh, crown.old_vertices, crown.mesh.triangles.size(),
+                                                           record.promises.new_triangles))
+    record.warnings.push_back(std::move(missed));
   return tooth;
 }
 

@@ -4,8 +4,10 @@
 #include "pipeline/crown_input.hpp"
 
 #include "mesh/adjacency.hpp"
+#include "mesh/border_pieces.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/handles.hpp"
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
 
@@ -32,6 +34,28 @@ double extent(const TriangleMesh& mesh) {
   return box.sizes().maxCoeff();
 }
 
+/// Refuses what is open towards the root in more than one place: one root alone would be joined to one of them.
+void require_one_opening(const TriangleMesh& open_crown) {
+  constexpr double least_share = 0.2;  // of the base's cross-section; holes that the scanner left are smaller
+  const std::vector<BorderPiece> pieces = border_pieces(open_crown);
+  if (pieces.empty()) return;
+  const BorderPiece& base = pieces[base_piece(pieces)];
+  const Eigen::Vector3d axis = base.area_vector.normalized();
+  int openings = 0;
+  std::vector<std::int64_t> ids;
+  for (const BorderPiece& piece : pieces) {
+    if (piece.area_vector.dot(axis) < least_share * base.area_vector.norm()) continue;
+    ++openings;
+    ids.insert(ids.end(), piece.vertices.begin(), piece.vertices.end());
+  }
+  if (openings > 1)
+    throw InputError(
+        fmt::format("The crown is open towards its root in {} places: it was cut below the furcation, or a "
+                    "strip of the scan spans its base. Cut it at the neck (ids of vertices).",
+                    openings),
+        ids);
+}
+
 constexpr double smallest_tooth = 2;  // mm
 constexpr double largest_tooth = 20;
 
@@ -44,7 +68,7 @@ constexpr std::array<Unit, 3> other_units{{{"centimetres", "cm", 10}, {"inches",
 
 }  // namespace
 
-Diagnosis require_usable_crown(const TriangleMesh& crown) {
+Diagnosis require_readable_crown(const TriangleMesh& crown) {
   if (crown.triangles.empty()) throw InputError("The crown has no triangles.");
   Diagnosis d = diagnose(crown);
   if (!d.non_finite_vertices.empty())
@@ -54,6 +78,11 @@ Diagnosis require_usable_crown(const TriangleMesh& crown) {
                      widened(d.out_of_range_triangles));
   if (!d.repeated_index_triangles.empty())
     throw InputError("The crown has triangles that name one vertex twice.", widened(d.repeated_index_triangles));
+  return d;
+}
+
+Diagnosis require_usable_crown(const TriangleMesh& crown) {
+  Diagnosis d = require_readable_crown(crown);
   if (!d.non_manifold_edges.empty())
     throw InputError("The crown has edges where more than two triangles meet (pairs of vertices).",
                      flat_ids(d.non_manifold_edges));
@@ -80,13 +109,9 @@ void require_tooth_size(const TriangleMesh& crown, double millimetres_per_unit) 
 
 void require_outward_and_uncut(const TriangleMesh& open_crown) {
   if (cone_volume(open_crown) <= 0) throw InputError("The crown's triangles face inwards: turn them over.");
-  // Euler: a disc with h handles and k further holes has V - E + F = 1 - 2 h - k.
-  const auto count = [](std::size_t size) { return static_cast<std::int64_t>(size); };
-  const std::int64_t euler =
-      count(open_crown.vertices.size()) - count(edge_table(open_crown).size()) + count(open_crown.triangles.size());
-  const std::int64_t handles = (2 - euler - count(border_loops(open_crown).size())) / 2;
-  if (handles > 0)
+  if (const int handles = handle_count(open_crown); handles > 0)
     throw InputError(fmt::format("The crown has {} handles, bridges over gaps or tunnels: a tooth has none.", handles));
+  require_one_opening(open_crown);
   const auto cuts = self_intersecting_triangles(open_crown);
   if (cuts.empty()) return;
   std::vector<std::int64_t> ids;

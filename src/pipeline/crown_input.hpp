@@ -7,6 +7,10 @@
 
 namespace rhizodont {
 
+/// Refuses meshes that cannot be looked at: no triangles, indices out of range or repeated in a triangle, coordinates
+/// that are not finite. Throws InputError (ids of vertices or triangles). Returns what was found out.
+Diagnosis require_readable_crown(const TriangleMesh& crown);
+
 /// Refuses meshes that no tooth can be made of, with a sentence that says what is wrong and where: no triangles,
 /// indices out of range, coordinates that are not finite, edges with more than two triangles, triangles turned against
 /// their neighbours, several pieces. Throws InputError (ids of vertices or triangles). Returns what was found out.
@@ -16,8 +20,9 @@ Diagnosis require_usable_crown(const TriangleMesh& crown);
 /// is what the coordinates were already multiplied with. Throws InputError.
 void require_tooth_size(const TriangleMesh& crown, double millimetres_per_unit);
 
-/// Refuses an open crown whose triangles face inwards, that has handles, or that cuts itself. Throws InputError (ids of
-/// triangles). Precondition: one piece, its border made of simple loops.
+/// Refuses an open crown whose triangles face inwards, that has handles, that is open towards the root in more than one
+/// place, or that cuts itself. Throws InputError (ids of vertices or triangles). Precondition: one piece, its border
+/// made of simple loops.
 void require_outward_and_uncut(const TriangleMesh& open_crown);
 
 }  // namespace rhizodont

@@ -3,10 +3,13 @@
 
 #include "pipeline/take_crown.hpp"
 
+#include "mesh/adjacency.hpp"
+#include "mesh/diagnosis.hpp"
 #include "mesh/repair.hpp"
 #include "pipeline/closed_crown.hpp"
 #include "pipeline/crown_input.hpp"
 #include "rhizodont/error.hpp"
+#include "skirt/ragged_part.hpp"
 #include "skirt/skirt_border.hpp"
 #include "skirt/skirt_network.hpp"
 #include "skirt/spikes.hpp"
@@ -28,7 +31,7 @@ struct Tools {
   const SurfaceNetwork* skirt;  // null: none
 };
 
-/// The part of the crown that the tooth will keep: open at the base, its border made of simple loops.
+/// The part of the crown that is kept so far: open at the base, its border made of simple loops.
 KeptCrown open_crown(const TriangleMesh& crown, bool closed, const Atlas& atlas, const CompleteOptions& options,
                      CompletionRecord& record) {
   std::vector<bool> keep(crown.triangles.size(), true);
@@ -56,6 +59,32 @@ void keep_only(KeptCrown& kept, const std::vector<bool>& keep, const std::string
   kept.old_triangles = std::move(rest.old_triangles);
 }
 
+/// Confidences of a part's vertices put at their numbers in the whole; -1 for the others.
+std::vector<float> numbered_as_before(const std::vector<float>& of_part, const std::vector<int>& old_vertices,
+                                      std::size_t vertices) {
+  std::vector<float> confidence(vertices, -1);
+  for (std::size_t v = 0; v < of_part.size(); ++v) confidence[static_cast<std::size_t>(old_vertices[v])] = of_part[v];
+  return confidence;
+}
+
+/// What is kept of a part of the crown, with all triangles of the whole crown between its vertices. Vertices outside of
+/// the part are dropped as its ragged border.
+KeptCrown all_between(const TriangleMesh& crown, const Submesh& part, const KeptCrown& kept) {
+  std::vector<bool> is_kept(crown.vertices.size(), false);
+  for (const int v : kept.old_vertices)
+    is_kept[static_cast<std::size_t>(part.old_vertices[static_cast<std::size_t>(v)])] = true;
+  std::vector<bool> keep;
+  for (const Triangle& t : crown.triangles)
+    keep.push_back(std::all_of(t.begin(), t.end(), [&](int v) { return is_kept[static_cast<std::size_t>(v)]; }));
+  KeptCrown whole = keep_crown(crown, keep, "ragged border");
+  std::vector<std::string> reason(crown.vertices.size());
+  for (const DroppedVertex& d : kept.dropped)
+    reason[static_cast<std::size_t>(part.old_vertices[static_cast<std::size_t>(d.vertex)])] = d.reason;
+  for (DroppedVertex& d : whole.dropped)
+    if (const std::string& earlier = reason[static_cast<std::size_t>(d.vertex)]; !earlier.empty()) d.reason = earlier;
+  return whole;
+}
+
 /// Takes off what the network judges to be skirt, and the spikes on what is left.
 void drop_skirt(const TriangleMesh& crown, KeptCrown& kept, const SurfaceNetwork& network, double threshold,
                 CompletionRecord& record) {
@@ -70,12 +99,45 @@ void drop_skirt(const TriangleMesh& crown, KeptCrown& kept, const SurfaceNetwork
   keep_only(kept, triangles_without_spikes(kept.mesh), "spike");
 }
 
+void require_tooth_surface(const TriangleMesh& open_crown) {
+  require_usable_crown(open_crown);
+  require_outward_and_uncut(open_crown);
+}
+
+bool is_tooth_surface(const TriangleMesh& open_crown) {
+  try {
+    require_tooth_surface(open_crown);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// The tooth's own surface in a mesh as a segmentation leaves it: judged on its sound part, then all between the
+/// vertices that are kept. What is no surface near its border is dropped, what is none elsewhere refused.
+KeptCrown tooth_of_raw_crown(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
+                             CompletionRecord& record) {
+  require_readable_crown(crown);
+  const std::vector<bool> sound = sound_triangles(crown);
+  const Submesh part = submesh(crown, sound);
+  require_tooth_size(part.mesh, options.millimetres_per_unit);
+  KeptCrown kept = open_crown(part.mesh, diagnose(part.mesh).border_edges.empty(), tools.atlas, options, record);
+  drop_skirt(part.mesh, kept, *tools.skirt, *options.skirt, record);
+  record.tooth_confidence = numbered_as_before(record.tooth_confidence, part.old_vertices, crown.vertices.size());
+  if (part.old_triangles.size() < crown.triangles.size()) kept = all_between(crown, part, kept);
+  if (is_tooth_surface(kept.mesh)) return kept;
+  keep_only(kept, triangles_without_ragged_defects(kept.mesh), "ragged border");
+  keep_only(kept, triangles_without_spikes(kept.mesh), "spike");
+  require_tooth_surface(kept.mesh);
+  return kept;
+}
+
 KeptCrown usable_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
                       CompletionRecord& record) {
+  if (options.skirt) return tooth_of_raw_crown(crown, tools, options, record);
   const Diagnosis diagnosis = require_usable_crown(crown);
   require_tooth_size(crown, options.millimetres_per_unit);
   KeptCrown kept = open_crown(crown, diagnosis.border_edges.empty(), tools.atlas, options, record);
-  if (options.skirt) drop_skirt(crown, kept, *tools.skirt, *options.skirt, record);
   require_outward_and_uncut(kept.mesh);
   return kept;
 }
@@ -101,12 +163,8 @@ KeptCrown repaired_part(const TriangleMesh& crown, const Tools& tools, const Com
   RepairedMesh repaired = repair(crown);
   KeptCrown kept = usable_part(repaired.mesh, tools, options, record);
   number_as_input(kept, repaired, crown.vertices.size());
-  if (!record.tooth_confidence.empty()) {
-    std::vector<float> confidence(crown.vertices.size(), -1);
-    for (std::size_t v = 0; v < record.tooth_confidence.size(); ++v)
-      confidence[static_cast<std::size_t>(repaired.old_vertices[v])] = record.tooth_confidence[v];
-    record.tooth_confidence = std::move(confidence);
-  }
+  if (!record.tooth_confidence.empty())
+    record.tooth_confidence = numbered_as_before(record.tooth_confidence, repaired.old_vertices, crown.vertices.size());
   record.repairs = std::move(repaired.steps);
   return kept;
 }
@@ -116,6 +174,19 @@ bool has_repairable_defects(const TriangleMesh& crown) {
   try {
     return !repair(crown).steps.empty();
   } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Whether what the crown is refused for lies in a skirt that was not to be taken off.
+bool would_do_without_skirt(const TriangleMesh& crown, const Tools& tools, CompleteOptions options) {
+  if (options.skirt || tools.skirt == nullptr) return false;
+  options.skirt = SkirtBorderOptions().threshold;
+  CompletionRecord unused;
+  try {
+    usable_part(crown, tools, options, unused);
+    return true;
+  } catch (const Error&) {
     return false;
   }
 }
@@ -132,6 +203,8 @@ KeptCrown take_crown(const TriangleMesh& input, const Atlas& atlas, const std::o
   try {
     kept = options.repair ? repaired_part(crown, tools, options, record) : usable_part(crown, tools, options, record);
   } catch (const InputError& error) {
+    if (would_do_without_skirt(crown, tools, options))
+      throw InputError(std::string(error.what()) + " The option --skirt auto takes it off.", error.elements());
     if (options.repair || !has_repairable_defects(crown)) throw;
     throw InputError(std::string(error.what()) + " The option --repair may help.", error.elements());
   }

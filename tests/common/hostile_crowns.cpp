@@ -29,10 +29,6 @@ int add_vertex(TriangleMesh& mesh, const Point& p) {
   return static_cast<int>(mesh.vertices.size()) - 1;
 }
 
-Eigen::Vector3d any_direction(RandomStream& random) {
-  return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-}
-
 /// Some elements out of the whole, at least one.
 std::size_t some(std::size_t whole, double share, RandomStream& random) {
   return 1 + random.index(std::max<std::size_t>(1, static_cast<std::size_t>(share * static_cast<double>(whole))));
@@ -50,18 +46,6 @@ std::vector<bool> triangles_near(const TriangleMesh& mesh, const Point& centre, 
 void remove(TriangleMesh& mesh, std::vector<bool> which) {
   which.flip();
   if (std::find(which.begin(), which.end(), true) != which.end()) mesh = submesh(mesh, which).mesh;
-}
-
-/// Border half-edges (from, to) as the triangle beside them runs; of any mesh.
-std::vector<std::pair<int, int>> border_half_edges(const TriangleMesh& mesh) {
-  const EdgeTable table = edge_table(mesh);
-  std::vector<std::pair<int, int>> border;
-  for (std::size_t e = 0; e < table.size(); ++e) {
-    if (table.triangle_count(e) != 1) continue;
-    const int h = table.half_edges[static_cast<std::size_t>(table.first[e])];
-    border.emplace_back(half_edge_from(mesh, h), half_edge_to(mesh, h));
-  }
-  return border;
 }
 
 std::set<int> border_vertices(const TriangleMesh& mesh) {
@@ -215,39 +199,6 @@ void add_bridges(TriangleMesh& mesh, RandomStream& random) {
   }
 }
 
-/// A tube between two triangles, which it replaces; it bulges outward.
-void add_tube(TriangleMesh& mesh, std::size_t s, std::size_t t, double bulge) {
-  const Triangle from = mesh.triangles[s], to = mesh.triangles[t];
-  for (const int v : from)
-    if (std::find(to.begin(), to.end(), v) != to.end()) return;
-  std::array<int, 3> far{to[0], to[2], to[1]};  // against the sense of `from`, starting near its first corner
-  const auto distance = [&](int a, int b) {
-    return (mesh.vertices[static_cast<std::size_t>(a)] - mesh.vertices[static_cast<std::size_t>(b)]).norm();
-  };
-  std::rotate(far.begin(),
-              std::min_element(far.begin(), far.end(),
-                               [&](int x, int y) { return distance(from[0], x) < distance(from[0], y); }),
-              far.end());
-  const Eigen::Vector3d out = (triangle_normal(mesh, s) + triangle_normal(mesh, t)).normalized();
-  std::array<int, 3> ring{};
-  for (std::size_t i = 0; i < 3; ++i)
-    ring[i] = add_vertex(mesh, 0.5 * (mesh.vertices[static_cast<std::size_t>(from[i])] +
-                                      mesh.vertices[static_cast<std::size_t>(far[i])]) +
-                                   bulge * out);
-  std::vector<bool> gone(mesh.triangles.size(), false);
-  gone[s] = gone[t] = true;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t j = (i + 1) % 3;
-    for (const auto& [p, q, r, u] :
-         {std::array{from[i], from[j], ring[j], ring[i]}, {ring[i], ring[j], far[j], far[i]}}) {
-      mesh.triangles.push_back({p, q, r});
-      mesh.triangles.push_back({p, r, u});
-    }
-  }
-  gone.resize(mesh.triangles.size(), false);
-  remove(mesh, gone);
-}
-
 /// Handles, mostly beside the border.
 void add_handles(TriangleMesh& mesh, RandomStream& random) {
   for (std::size_t k = 1 + random.index(3); k-- > 0;) {
@@ -391,6 +342,53 @@ constexpr std::array<Kind, 23> kinds{{{"noise", add_noise},
 constexpr const char* combination = "combination";
 
 }  // namespace
+
+Eigen::Vector3d any_direction(RandomStream& random) {
+  return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized();
+}
+
+std::vector<std::pair<int, int>> border_half_edges(const TriangleMesh& mesh) {
+  const EdgeTable table = edge_table(mesh);
+  std::vector<std::pair<int, int>> border;
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    if (table.triangle_count(e) != 1) continue;
+    const int h = table.half_edges[static_cast<std::size_t>(table.first[e])];
+    border.emplace_back(half_edge_from(mesh, h), half_edge_to(mesh, h));
+  }
+  return border;
+}
+
+void add_tube(TriangleMesh& mesh, std::size_t s, std::size_t t, double bulge) {
+  const Triangle from = mesh.triangles[s], to = mesh.triangles[t];
+  for (const int v : from)
+    if (std::find(to.begin(), to.end(), v) != to.end()) return;
+  std::array<int, 3> far{to[0], to[2], to[1]};  // against the sense of `from`, starting near its first corner
+  const auto distance = [&](int a, int b) {
+    return (mesh.vertices[static_cast<std::size_t>(a)] - mesh.vertices[static_cast<std::size_t>(b)]).norm();
+  };
+  std::rotate(far.begin(),
+              std::min_element(far.begin(), far.end(),
+                               [&](int x, int y) { return distance(from[0], x) < distance(from[0], y); }),
+              far.end());
+  const Eigen::Vector3d out = (triangle_normal(mesh, s) + triangle_normal(mesh, t)).normalized();
+  std::array<int, 3> ring{};
+  for (std::size_t i = 0; i < 3; ++i)
+    ring[i] = add_vertex(mesh, 0.5 * (mesh.vertices[static_cast<std::size_t>(from[i])] +
+                                      mesh.vertices[static_cast<std::size_t>(far[i])]) +
+                                   bulge * out);
+  std::vector<bool> gone(mesh.triangles.size(), false);
+  gone[s] = gone[t] = true;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3;
+    for (const auto& [p, q, r, u] :
+         {std::array{from[i], from[j], ring[j], ring[i]}, {ring[i], ring[j], far[j], far[i]}}) {
+      mesh.triangles.push_back({p, q, r});
+      mesh.triangles.push_back({p, r, u});
+    }
+  }
+  gone.resize(mesh.triangles.size(), false);
+  remove(mesh, gone);
+}
 
 std::vector<std::string> hostile_kinds() {
   std::vector<std::string> names;

@@ -7,7 +7,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
+
+namespace rhizodont {
+class RandomStream;
+}
 
 // Crowns as bad as files hold them, made from a clean crown and a seed.
 namespace rhizodont::test {
@@ -30,7 +35,19 @@ TriangleMesh coarsened_to(const TriangleMesh& mesh, std::size_t vertices);
 /// `refined_to` or `coarsened_to`.
 TriangleMesh resized_to(const TriangleMesh& mesh, std::size_t vertices);
 
-/// The crown closed by a fan over its longest border loop.
+/// The crown closed by a fan over its base.
 TriangleMesh capped(const TriangleMesh& crown);
+
+// What the generators of bad crowns have in common.
+
+/// A unit vector, all directions alike.
+Eigen::Vector3d any_direction(RandomStream& random);
+
+/// Half-edges (from, to) of edges with one triangle, as that triangle runs. Of any mesh.
+std::vector<std::pair<int, int>> border_half_edges(const TriangleMesh& mesh);
+
+/// Puts a tube in the place of triangles `s` and `t`, bulging outwards by `bulge` mm: a handle. Nothing where the two
+/// share a vertex. The tube's vertices become the last.
+void add_tube(TriangleMesh& mesh, std::size_t s, std::size_t t, double bulge);
 
 }  // namespace rhizodont::test
