@@ -44,8 +44,12 @@ std::vector<double> geodesic_distances(const TriangleMesh& mesh, const std::vect
     front.emplace(0, s);
   }
   const auto point = [&](int v) -> const Point& { return mesh.vertices[static_cast<std::size_t>(v)]; };
+  // In flat triangles two vertices may shorten each other's way by ever less; elsewhere a few times are enough.
+  constexpr int most_offers = 64;
+  std::vector<int> taken(mesh.vertices.size(), 0);
   const auto offer = [&](int v, double d) {
-    if (!(d < distance[static_cast<std::size_t>(v)])) return;
+    if (!(d < distance[static_cast<std::size_t>(v)]) || taken[static_cast<std::size_t>(v)] >= most_offers) return;
+    ++taken[static_cast<std::size_t>(v)];
     distance[static_cast<std::size_t>(v)] = d;
     front.emplace(d, v);
   };
