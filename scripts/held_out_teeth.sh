@@ -12,5 +12,5 @@ count=${2:-10}
 first=${3:-2000000000000}
 data=${4:-../shared/data}
 program=build/apps/rhizodont/rhizodont
-"$program" synth --data "$data" --count "$count" --seed "$first" --crowns --edge 0.3 -o "$folder" \
+"$program" synth --data "$data" --count "$count" --seed "$first" --crowns --edge 0.3 --overwrite -o "$folder" \
   --type 11 22 13 24 15 26 17 28 31 42 33 44 35 46 37 48 > /dev/null

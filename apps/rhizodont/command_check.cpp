@@ -3,17 +3,17 @@
 #include "commands.hpp"
 #include "evaluation/json.hpp"
 #include "json_option.hpp"
+#include "output_checks.hpp"
 #include "rhizodont/check.hpp"
-#include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "rhizodont/report.hpp"
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
-#include <fstream>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace rhizodont::command_line {
 namespace {
@@ -77,31 +77,22 @@ void print_table(const CheckReport& report) {
   for (const std::string& failure : report.failures) fmt::print("- {}\n", failure);
 }
 
-/// The triangles that the report of `complete --repair` lists. Throws InputError for a report on another file.
-std::vector<int> repaired_triangles(const std::string& report_file, const std::string& crown_file) {
-  std::ifstream stream(report_file);
-  if (!stream) throw InputError(fmt::format("The file {} cannot be read.", report_file));
-  try {
-    const auto report = nlohmann::json::parse(stream);
-    if (report.at("input").at("sha256").get<std::string>() != sha256_of_file(crown_file))
-      throw InputError(fmt::format("{} is the report on another crown than {}.", report_file, crown_file));
-    std::vector<int> ids;
-    for (const auto& step : report.at("repairs"))
-      for (const auto& id : step.at("triangles")) ids.push_back(id.get<int>());
-    return ids;
-  } catch (const nlohmann::json::exception&) {
-    throw InputError(fmt::format("{} is not a report of rhizodont complete.", report_file));
-  }
-}
-
 void run(const CheckCommand& command) {
+  std::vector<std::filesystem::path> inputs{command.crown, command.tooth};
+  if (!command.report.empty()) inputs.emplace_back(command.report);
+  require_safe_outputs(inputs, command.json.outputs());
   const MeshFile crown = load_mesh(command.crown);
   const MeshFile tooth = load_mesh(command.tooth);
   CheckOptions options = command.options;
-  if (!command.report.empty()) options.repaired_triangles = repaired_triangles(command.report, command.crown);
+  if (!command.report.empty()) {
+    ExcusedByReport excused =
+        excused_by_report(command.report, sha256_of_bytes(read_file_bytes(command.crown)), crown.file_vertices);
+    options.repaired_triangles = std::move(excused.repaired_triangles);
+    options.dropped_vertices = std::move(excused.dropped_vertices);
+  }
   const CheckReport report = check(crown.mesh, tooth.mesh, options);
   if (command.json.wants_table()) print_table(report);
-  command.json.write(report);
+  write_output_files(command.json.print_or_file(report));
   if (!report.holds()) exit_with(static_cast<int>(ErrorCode::no_result));
 }
 
@@ -115,11 +106,13 @@ void add_check_command(CLI::App& app) {
   check_app->add_option("CROWN", command->crown, "The crown as scanned (.stl .ply .obj .off .vtp)")->required();
   check_app->add_option("TOOTH", command->tooth, "The completed tooth")->required();
   check_app
-      ->add_option("--least-kept", command->options.least_kept_share,
-                   "Least share of the crown's triangles that must be in the tooth, 0 to 1")
+      ->add_option(
+          "--least-kept", command->options.least_kept_share,
+          "Least share of the crown's triangles that must be in the tooth, 0 to 1; with --report without cap and "
+          "skirt")
       ->capture_default_str();
   check_app->add_option("--report", command->report,
-                        "Report of 'complete --repair': triangles that it lists as repaired are not demanded");
+                        "Report of 'complete': what it lists as cap, skirt or repaired is not demanded");
   command->json.add_to(*check_app);
   check_app->callback([command] { run(*command); });
 }

@@ -1,11 +1,16 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "commands.hpp"
+#include "complete_jobs.hpp"
 #include "learning/blas.hpp"
+#include "number_options.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "rhizodont/output_files.hpp"
+#include "rhizodont/report.hpp"
 #include "rhizodont/tooth_file.hpp"
+#include "words.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -13,6 +18,8 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <iostream>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -23,26 +30,23 @@ namespace rhizodont::command_line {
 namespace {
 
 struct CompleteCommand {
-  std::string crown;
-  std::string output;
-  std::string report;
+  CompleteFiles files;
+  std::string format;
   std::string models;
   std::string skirt = "keep";
-  std::string confidence;
-  int fdi = 0;
-  int candidates = 1;
+  bool as_float = false;
+  bool name_in_report = false;
   bool quiet = false;
   CompleteOptions options;
 };
 
 const std::map<std::string, CapHandling> cap_names{{"drop", CapHandling::drop}, {"keep", CapHandling::keep}};
-const std::map<std::string, double> unit_names{{"mm", 1}, {"cm", 10}, {"in", 25.4}, {"m", 1000}};
 
 /// One line that names the stage at work, on a terminal only.
-ProgressCallback progress_line(bool quiet) {
+ProgressCallback progress_line(bool quiet, const std::string& before) {
   if (quiet || !isatty(STDERR_FILENO)) return {};
-  return [](std::string_view stage) {
-    fmt::print(stderr, "\r\033[K{} ...", stage);
+  return [before](std::string_view stage) {
+    fmt::print(stderr, "\r\033[K{}{} ...", before, stage);
     std::fflush(stderr);
   };
 }
@@ -51,32 +55,25 @@ void clear_line(const ProgressCallback& progress) {
   if (progress) fmt::print(stderr, "\r\033[K");
 }
 
-/// The files of a candidate: the first has the names that the user gave, the others a number before the extension.
-std::filesystem::path numbered(const std::filesystem::path& file, std::size_t candidate) {
-  if (candidate == 0) return file;
-  std::filesystem::path result = file;
-  return result.replace_filename(
-      fmt::format("{}_{}{}", file.stem().string(), candidate + 1, file.extension().string()));
-}
-
-void print_summary(const CompletedTooth& tooth, const std::string& output) {
+void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::string& output) {
   const CompletionRecord& r = tooth.record;
   double seconds = 0;
   for (const StageRecord& stage : r.stages) seconds += stage.seconds;
   fmt::print(
+      out,
       "{}: tooth {}{}, {} of {} crown triangles kept bit for bit, root {:.1f} mm, new triangles Q {:.3f}, {:.2f} s\n",
       output, r.fdi, r.fdi_guessed ? " (guessed)" : "", r.kept_triangles, r.crown_triangles, r.root_length_mm,
       r.promises.new_triangles.all.value_or(QualityFigures{}).q_avg, seconds);
   if (const auto& interval = r.root_interval)
-    fmt::print("  root length with 80 % probability {:.1f} to {:.1f} mm, apex within {:.1f} mm\n",
+    fmt::print(out, "  root length with 80 % probability {:.1f} to {:.1f} mm, apex within {:.1f} mm\n",
                interval->length_low_mm, interval->length_high_mm, interval->apex_radius_mm);
   const auto skirt = std::count_if(r.dropped_vertices.begin(), r.dropped_vertices.end(),
                                    [](const DroppedCrownVertex& d) { return d.reason == "skirt"; });
-  if (skirt > 0) fmt::print("  {} vertices dropped as skirt\n", skirt);
+  if (skirt > 0) fmt::print(out, "  {} vertices dropped as skirt\n", skirt);
   for (const RepairStep& step : r.repairs)
-    fmt::print("  repaired: {} ({} vertices, {} triangles)\n", step.action, step.vertices.size(),
+    fmt::print(out, "  repaired: {} ({} vertices, {} triangles)\n", step.action, step.vertices.size(),
                step.triangles.size());
-  for (const std::string& warning : r.warnings) fmt::print("  note: {}\n", warning);
+  for (const std::string& warning : r.warnings) fmt::print(out, "  note: {}\n", warning);
 }
 
 /// keep, auto, or the confidence from which a vertex is tooth.
@@ -104,65 +101,208 @@ MeshFile confidence_file(const MeshFile& crown, const CompletionRecord& record) 
   return file;
 }
 
+/// All that the crowns of a command have in common.
+class Completion {
+ public:
+  explicit Completion(const CompleteCommand& command)
+      : command_(command),
+        models_folder_(command.models.empty() ? default_models_folder() : std::filesystem::path(command.models)),
+        jobs_(plan_complete(command.files, models_folder_)) {
+    if (!command.files.confidence.empty() && !skirt_threshold(command.skirt))
+      throw UsageError("A confidence is there only where a skirt is looked for (--skirt auto).");
+    for (const CrownJob& job : jobs_)
+      for (const auto* names : {&job.teeth, &job.reports})
+        for (const auto& name : *names)
+          if (is_standard_output(name)) words_ = stderr;
+    if (is_standard_output(jobs_.front().confidence)) words_ = stderr;
+  }
+
+  /// Completes them all; one that fails does not stop the others. The largest of their exit codes.
+  int run() {
+    int worst = 0;
+    std::size_t completed = 0;
+    for (std::size_t i = 0; i < jobs_.size(); ++i) {
+      const int code = complete_and_say(jobs_[i], i);
+      worst = std::max(worst, code);
+      completed += code == 0;
+    }
+    if (jobs_.size() > 1 && !command_.quiet) fmt::print(words_, "{} of {} crowns completed\n", completed, jobs_.size());
+    return worst;
+  }
+
+ private:
+  int complete_and_say(const CrownJob& job, std::size_t place) {
+    ReportedInput input;
+    std::vector<std::string> notes;  // of reading, for the report on a refused crown
+    if (command_.name_in_report && job.crown != "-")
+      input.file_name = std::filesystem::path(job.crown).filename().string();
+    CompleteOptions options = command_.options;
+    options.fdi = job.fdi;
+    options.skirt = skirt_threshold(command_.skirt);
+    try {
+      complete_one(job, place, options, input, notes);
+      return 0;
+    } catch (const Error& error) {
+      const bool reported =
+          !job.reports.empty() && (error.code() == ErrorCode::unusable_input || error.code() == ErrorCode::no_result);
+      const int code = say(error, job, reported ? "see " + job.reports.front().string() : "");
+      return reported ? std::max(code, write_refusal(completion_refusal_report(error, options, input, notes), job))
+                      : code;
+    }
+  }
+
+  void complete_one(const CrownJob& job, std::size_t place, const CompleteOptions& options, ReportedInput& input,
+                    std::vector<std::string>& notes) {
+    MeshFile crown = read_crown(job, input);
+    notes = crown.notes;
+    if (command_.as_float) {
+      const double moved = round_to_float(crown.mesh);
+      if (moved > 0) input.rounded_mm = moved * options.millimetres_per_unit;
+    } else if (!crown.coordinates_fit_float &&
+               holds_floats_only(name_with_format(job.teeth.front(), command_.files.output_format))) {
+      throw UsageError(
+          fmt::format("{} has coordinates with more digits than {} can hold: give the tooth a name in .ply or .obj, or "
+                      "have the crown "
+                      "rounded (--as-float).",
+                      job.shown_crown(), job.teeth.front().string()));
+    }
+    if (!models_) models_ = CompletionModels::load(models_folder_);
+    const std::string before =
+        jobs_.size() > 1 ? fmt::format("{} ({} of {}): ", job.shown_crown(), place + 1, jobs_.size()) : "";
+    const ProgressCallback progress = progress_line(command_.quiet, before);
+    std::vector<CompletedTooth> candidates;
+    try {
+      candidates = complete_candidates(crown.mesh, *models_, command_.files.candidates, options, progress);
+    } catch (const InputError& error) {
+      clear_line(progress);
+      throw in_terms_of_file(error, crown);
+    } catch (...) {
+      clear_line(progress);
+      throw;
+    }
+    clear_line(progress);
+    if (input.rounded_mm)
+      for (CompletedTooth& tooth : candidates)
+        tooth.record.warnings.push_back(fmt::format(
+            "The crown's coordinates were rounded to float (--as-float), by {:.1g} mm at most.", *input.rounded_mm));
+    write_results(job, crown, candidates, options, input);
+    if (!command_.quiet) print_results(job, candidates);
+  }
+
+  MeshFile read_crown(const CrownJob& job, ReportedInput& input) const {
+    try {
+      const std::string bytes =
+          job.crown == "-" ? std::string{std::istreambuf_iterator<char>(std::cin), {}} : read_file_bytes(job.crown);
+      input.sha256 = sha256_of_bytes(bytes);
+      return read_mesh(bytes, command_.format.empty() ? job.crown : command_.format);
+    } catch (const InputError& error) {
+      throw InputError(job.shown_crown() + ": " + error.what(), error.elements());
+    }
+  }
+
+  /// Their records refer to the crown's file from then on.
+  void write_results(const CrownJob& job, const MeshFile& crown, std::vector<CompletedTooth>& candidates,
+                     const CompleteOptions& options, const ReportedInput& input) const {
+    std::vector<OutputFile> results;
+    const auto add_mesh = [&](const std::filesystem::path& path, const MeshFile& mesh) {
+      results.push_back({path, mesh_file_bytes(name_with_format(path, command_.files.output_format), mesh)});
+    };
+    if (!job.confidence.empty()) add_mesh(job.confidence, confidence_file(crown, candidates.front().record));
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      add_mesh(job.teeth[i], tooth_file(candidates[i], crown));
+      refer_to_file(candidates[i].record, crown, name_with_format(job.teeth[i], command_.files.output_format));
+      if (!job.reports.empty()) results.push_back({job.reports[i], completion_report(candidates[i], options, input)});
+    }
+    write_output_files(results);
+  }
+
+  void print_results(const CrownJob& job, const std::vector<CompletedTooth>& candidates) const {
+    for (std::size_t i = 0; i < candidates.size(); ++i) print_summary(words_, candidates[i], job.teeth[i].string());
+    if (job.fdi_from_name) fmt::print(words_, "  tooth number {} taken from the file's name\n", *job.fdi);
+  }
+
+  int say(const Error& error, const CrownJob& job, const std::string& where_all_are) const {
+    const std::string line = error_line(error, where_all_are);
+    const bool names_crown = jobs_.size() == 1 || line.find(job.shown_crown()) != std::string::npos;
+    fmt::print(stderr, "rhizodont: {}{}\n", names_crown ? "" : job.shown_crown() + ": ", line);
+    return static_cast<int>(error.code());
+  }
+
+  /// The report says of a crown without a tooth why and where.
+  int write_refusal(const std::string& report, const CrownJob& job) const {
+    try {
+      write_output_files({{job.reports.front(), report}});
+      return 0;
+    } catch (const Error& unwritable) {
+      return say(unwritable, job, {});
+    }
+  }
+
+  const CompleteCommand& command_;
+  std::filesystem::path models_folder_;
+  std::vector<CrownJob> jobs_;
+  std::optional<CompletionModels> models_;  // loaded once a crown could be read
+  std::FILE* words_ = stdout;               // what is said to the user, so that it does not get into a mesh
+};
+
 void run(const CompleteCommand& command) {
   if (const std::string warning = blas_warning(); !warning.empty()) fmt::print(stderr, "rhizodont: {}\n", warning);
-  require_savable(command.output);
-  if (!command.report.empty()) require_writable_place(command.report);
-  const MeshFile crown = load_mesh(command.crown);
-  const CompletionModels models =
-      CompletionModels::load(command.models.empty() ? default_models_folder() : std::filesystem::path(command.models));
-  CompleteOptions options = command.options;
-  if (command.fdi != 0) options.fdi = command.fdi;
-  options.skirt = skirt_threshold(command.skirt);
-  if (!command.confidence.empty()) {
-    if (!options.skirt) throw UsageError("A confidence is there only where a skirt is looked for (--skirt auto).");
-    require_savable(command.confidence);
-  }
-  const ProgressCallback progress = progress_line(command.quiet);
-  std::vector<CompletedTooth> candidates;
-  try {
-    candidates = complete_candidates(crown.mesh, models, command.candidates, options, progress);
-  } catch (const InputError& error) {
-    clear_line(progress);
-    throw in_terms_of_file(error, crown);
-  } catch (...) {
-    clear_line(progress);
-    throw;
-  }
-  clear_line(progress);
-  const std::string sha256 = sha256_of_file(command.crown);
-  std::vector<std::filesystem::path> written;
-  try {
-    if (!command.confidence.empty()) {
-      written.emplace_back(command.confidence);
-      save_mesh(command.confidence, confidence_file(crown, candidates.front().record));
-    }
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      written.push_back(numbered(command.output, i));
-      save_mesh(written.back(), tooth_file(candidates[i], crown));
-      refer_to_file(candidates[i].record, crown, command.output);
-      if (command.report.empty()) continue;
-      written.push_back(numbered(command.report, i));
-      write_file_atomically(written.back(), completion_report(candidates[i], options, command.crown, sha256));
-    }
-  } catch (...) {
-    for (const auto& file : written) std::filesystem::remove(file);  // all or nothing
-    throw;
-  }
-  if (command.quiet) return;
-  for (std::size_t i = 0; i < candidates.size(); ++i)
-    print_summary(candidates[i], numbered(command.output, i).string());
+  const int code = Completion(command).run();
+  if (code != 0) exit_with(code);
+}
+
+void add_file_options(CLI::App& complete, CompleteCommand& command) {
+  CompleteFiles& files = command.files;
+  complete
+      .add_option("CROWN", files.crowns,
+                  "Crown meshes: .stl .ply .obj .off .vtp .vtk, also .gz; - is standard input. Several need a folder "
+                  "(-o FOLDER); their "
+                  "numbers are taken from the files' names")
+      ->required();
+  complete
+      .add_option("-o,--output", files.output,
+                  "Where the tooth goes: .ply .stl .obj .glb, a folder, or - for standard output")
+      ->required();
+  complete
+      .add_option("--format", command.format,
+                  "Format of CROWN where neither contents nor name tell: stl, ply, obj, off, vtp, vtk")
+      ->check(CLI::IsMember({"stl", "ply", "obj", "off", "vtp", "vtk"}, CLI::ignore_case));
+  complete.add_option("--output-format", files.output_format, "Format of teeth in a folder or on standard output")
+      ->check(CLI::IsMember({"ply", "stl", "obj", "glb"}))
+      ->capture_default_str();
+  complete.add_flag("--as-float", command.as_float,
+                    "Round the crown to float, which is all that STL and GLB can hold; the report says by how much");
+  complete.add_option("--fdi", files.fdi, "FDI number of the tooth, 11-48; without it the type is guessed");
+  complete.add_option("--report", files.report,
+                      "Write the report (JSON) to this file or folder, also if the crown is refused");
+  complete.add_flag("--name-in-report", command.name_in_report,
+                    "The report names the crown's file; else it holds its hash alone, for names tell of patients");
+  complete.add_option("--skirt-confidence", files.confidence,
+                      "Write the crown with the confidence of each vertex to this file (.ply)");
+  complete
+      .add_option("--candidates", files.candidates,
+                  "Number of teeth: the expected one, then others (OUTPUT_2, ...) over the interval of root length")
+      ->capture_default_str();
+  complete.add_flag("--overwrite", files.overwrite,
+                    "Replace files also where you did not name them yourself: in a folder, or OUTPUT_2, ...");
+}
+
+void add_root_options(CLI::App& complete, RootSteering& steering) {
+  complete.add_option("--root-length", steering.length_mm,
+                      "Length of the root in mm, such as measured on an X-ray: lowest point of the crown to the apex");
+  complete.add_option("--root-tip", steering.tip_degrees, "Turn the root, degrees; positive: apex towards distal");
+  complete.add_option("--root-torque", steering.torque_degrees,
+                      "Turn the root, degrees; positive: apex towards tongue or palate");
+  complete.add_option("--root-bend", steering.bend_degrees,
+                      "Bend the root's lower half, degrees; positive: apex towards distal");
 }
 
 }  // namespace
 
 void add_complete_command(CLI::App& app) {
   auto command = std::make_shared<CompleteCommand>();
-  CLI::App* complete = app.add_subcommand("complete", "A whole tooth with a root from a scanned crown");
-  complete->add_option("CROWN", command->crown, "Crown mesh: .stl .ply .obj .off .vtp .vtk, also .gz")->required();
-  complete->add_option("-o,--output", command->output, "Where the tooth goes: .ply .stl .obj .glb")->required();
-  complete->add_option("--fdi", command->fdi, "FDI number of the tooth, 11-48; without it the type is guessed");
-  complete->add_option("--report", command->report, "Write the report (JSON) to this file");
+  CLI::App* complete = app.add_subcommand("complete", "Whole teeth with roots from scanned crowns");
+  add_file_options(*complete, *command);
   complete->add_option("--e", command->options.e, "Side of the lattice in mm, 0.2 to 2; new edges are about half of it")
       ->capture_default_str();
   complete->add_option("--cap", command->options.cap, "A cap that closes the crown's base: drop, keep")
@@ -172,27 +312,17 @@ void add_complete_command(CLI::App& app) {
       ->add_option("--skirt", command->skirt,
                    "Gum and webs around the crown: keep, auto (drop), or drop below this CONFIDENCE of being tooth")
       ->capture_default_str();
-  complete->add_option("--skirt-confidence", command->confidence,
-                       "Write the crown with the confidence of each vertex to this file (.ply)");
   complete->add_flag("--repair", command->options.repair,
                      "Mend a defective crown first: merges, drops and turns, each listed in the report");
-  complete->add_option("--unit", command->options.millimetres_per_unit, "Unit of the crown's file: mm, cm, in, m")
-      ->transform(CLI::CheckedTransformer(unit_names))
+  complete
+      ->add_option_function<std::string>(
+          "--unit",
+          [command](const std::string& name) { command->options.millimetres_per_unit = millimetres_per_unit(name); },
+          "Unit of the crown's file: mm, cm, m, um, in, also in full and in capitals")
       ->default_str("mm");
   complete->add_option("--transition", command->options.transition,
                        "Width in mm of the smoothed band beside the crown, 0 to 5; chosen if not given");
-  RootSteering& steering = command->options.steering;
-  complete->add_option("--root-length", steering.length_mm,
-                       "Length of the root in mm, such as measured on an X-ray: lowest point of the crown to the apex");
-  complete->add_option("--root-tip", steering.tip_degrees, "Turn the root, degrees; positive: apex towards distal");
-  complete->add_option("--root-torque", steering.torque_degrees,
-                       "Turn the root, degrees; positive: apex towards tongue or palate");
-  complete->add_option("--root-bend", steering.bend_degrees,
-                       "Bend the root's lower half, degrees; positive: apex towards distal");
-  complete
-      ->add_option("--candidates", command->candidates,
-                   "Number of teeth: the expected one, then others (OUTPUT_2, ...) over the interval of root length")
-      ->capture_default_str();
+  add_root_options(*complete, command->options.steering);
   complete->add_option("--threads", command->options.threads, "At most so many threads; 0 = all")
       ->capture_default_str();
   complete->add_option("--models", command->models, "Folder with completion.safetensors and atlas.safetensors");

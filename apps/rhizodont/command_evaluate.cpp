@@ -8,6 +8,7 @@
 #include "json_option.hpp"
 #include "learning/blas.hpp"
 #include "learning/safetensors.hpp"
+#include "output_checks.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -132,20 +133,41 @@ void print_table(const Evaluation& evaluation) {
   fmt::print("{}\n", describe(CbctNoise{}));
 }
 
-/// Writes the scales that these teeth call for into the weight file with which they were completed.
-void calibrate_weights(const EvaluateCommand& command, const Evaluation& evaluation) {
+/// The weight file with which these teeth were completed, with the scales that they call for.
+OutputFile calibrated_weights(const EvaluateCommand& command, const Evaluation& evaluation) {
   TensorFile weights = read_safetensors(command.calibrate);
   const UncertaintyScales used = uncertainty_scales(weights.metadata).value_or(UncertaintyScales{0, 0, 0, 1});
   const UncertaintyScales scales = calibrate(evaluation, 0, used);
   note_uncertainty_scales(scales, weights.metadata);
   weights.metadata["uncertainty.teeth"] = std::to_string(mean_figures(evaluation, 0).teeth);
-  write_safetensors(command.calibrate, weights);
   fmt::print("{}: root length {:+.2f} to {:+.2f}, apex {:.2f}, surface {:.2f} times the expected distance\n",
              command.calibrate, scales.length_low, scales.length_high, scales.apex, scales.surface);
+  return {command.calibrate, safetensors_bytes(weights)};
+}
+
+std::filesystem::path models_folder(const EvaluateCommand& command) {
+  return command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
+}
+
+/// Before hours of work: none of the results may cost a tooth, a template or the weights; the weights themselves are
+/// written to only where that was asked for.
+void require_safe_places(const EvaluateCommand& command, const std::vector<EvaluationCase>& cases) {
+  std::vector<std::filesystem::path> inputs = files_below(command.templates);
+  for (const EvaluationCase& files : cases) inputs.insert(inputs.end(), {files.crown, files.truth});
+  std::vector<std::filesystem::path> outputs = command.json.outputs();
+  for (const std::string* file : {&command.csv, &command.plot}) {
+    if (file->empty()) continue;
+    require_no_mesh_ending(*file, "a table or a plot");
+    outputs.emplace_back(*file);
+  }
+  require_separate_files(files_below(models_folder(command)), outputs);
+  if (!command.calibrate.empty()) outputs.emplace_back(command.calibrate);
+  require_safe_outputs(inputs, outputs);
 }
 
 void run(const EvaluateCommand& command) {
   const std::vector<EvaluationCase> cases = find_evaluation_cases(command.cases);
+  require_safe_places(command, cases);
   std::vector<NamedPredictor> predictors{rhizodont_predictor(command)};
   if (!command.templates.empty()) predictors.push_back(template_predictor(command.templates));
   const EvaluationProgress progress = progress_line(cases.size());
@@ -158,10 +180,11 @@ void run(const EvaluateCommand& command) {
   }
   clear_line(progress);
   if (command.json.wants_table()) print_table(*evaluation);
-  command.json.write(*evaluation);
-  if (!command.csv.empty()) write_file_atomically(command.csv, evaluation_csv(*evaluation));
-  if (!command.plot.empty()) write_file_atomically(command.plot, root_length_plot(*evaluation));
-  if (!command.calibrate.empty()) calibrate_weights(command, *evaluation);
+  std::vector<OutputFile> results = command.json.print_or_file(*evaluation);
+  if (!command.csv.empty()) results.push_back({command.csv, evaluation_csv(*evaluation)});
+  if (!command.plot.empty()) results.push_back({command.plot, root_length_plot(*evaluation)});
+  if (!command.calibrate.empty()) results.push_back(calibrated_weights(command, *evaluation));
+  write_output_files(results);
   if (evaluation->has_failures()) exit_with(static_cast<int>(ErrorCode::no_result));
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "atlas/skirt_sample.hpp"
 #include "commands.hpp"
+#include "output_checks.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
@@ -20,7 +21,8 @@ struct LabelSkirtCommand {
 };
 
 void run(const LabelSkirtCommand& command) {
-  require_savable(command.output);
+  require_ending(command.output, {".ply"}, "a labelled crown");
+  require_safe_outputs({command.crown, command.restored}, {command.output});
   MeshFile crown = load_mesh(command.crown);
   const MeshFile restored = load_mesh(command.restored);
   const std::vector<std::uint8_t> labels = label_by_restored(crown.mesh, restored.mesh, command.tolerance_mm);

@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "evaluation/json.hpp"
 #include "json_option.hpp"
+#include "output_checks.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/measure.hpp"
 
@@ -47,9 +48,10 @@ void print_table(const MeshMeasures& m) {
 }
 
 void run(const MeasureCommand& command) {
+  require_safe_outputs({command.mesh}, command.json.outputs());
   const MeshMeasures measures = measure(load_mesh(command.mesh).mesh);
   if (command.json.wants_table()) print_table(measures);
-  command.json.write(measures);
+  write_output_files(command.json.print_or_file(measures));
 }
 
 }  // namespace

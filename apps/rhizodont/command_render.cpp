@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "evaluation/render.hpp"
 #include "mesh/geometry.hpp"
+#include "output_checks.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
@@ -49,6 +50,8 @@ Eigen::Vector3d growth_axis(const MeshFile& file) {
 }
 
 void run(const RenderCommand& command) {
+  require_ending(command.output, {".png"}, "a picture");
+  require_safe_outputs({command.meshes.begin(), command.meshes.end()}, {command.output});
   std::vector<MeshFile> files;
   for (const std::string& path : command.meshes) files.push_back(load_mesh(path));
   std::vector<RenderItem> items;
@@ -57,7 +60,7 @@ void run(const RenderCommand& command) {
     if (command.axis.size() == 3) item.up = Eigen::Vector3d(command.axis[0], command.axis[1], command.axis[2]);
     items.push_back(std::move(item));
   }
-  write_file_atomically(command.output, encode_png(render(items, command.options)));
+  write_output_files({{command.output, encode_png(render(items, command.options))}});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "evaluation/render.hpp"
 #include "mesh/float_bits.hpp"
+#include "output_checks.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
@@ -32,6 +33,7 @@ struct SynthCommand {
   bool crowns = false;
   bool clean_cut = false;
   bool skirts = false;
+  bool overwrite = false;
   double edge_mm = 0;
   std::string crown_format = "ply";
   double noise_mm = 0.005;
@@ -80,9 +82,7 @@ CroppedCrown crop(const SynthCommand& command, const SyntheticTooth& tooth, std:
 }
 
 void write_atlas(const SynthCommand& command, const ToothFamilies& families) {
-  const std::filesystem::path file = command.atlas;
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
-  save_atlas(make_atlas(families), file);
+  save_atlas(make_atlas(families), command.atlas);
   fmt::print("{}\n", command.atlas);
 }
 
@@ -92,33 +92,70 @@ struct Drawing {
   std::vector<std::vector<Colour>> colours;
 };
 
+std::filesystem::path file_name(const SynthCommand& command, const char* kind, int fdi, std::uint64_t seed) {
+  return std::filesystem::path(command.output) /
+         fmt::format("{}_{}_{}.{}", kind, fdi, seed, std::string_view(kind) == "crown" ? command.crown_format : "ply");
+}
+
+/// What will be written into the folder.
+std::vector<std::filesystem::path> names_in_folder(const SynthCommand& command) {
+  std::vector<std::filesystem::path> names;
+  if (command.output.empty()) return names;
+  for (const int fdi : command.fdi) {
+    for (int i = 0; i < command.count; ++i) {
+      const std::uint64_t seed = command.seed + static_cast<std::uint64_t>(i);
+      names.push_back(file_name(command, command.skirts ? "skirt" : "tooth", fdi, seed));
+      if (command.crowns && !command.skirts) names.push_back(file_name(command, "crown", fdi, seed));
+    }
+  }
+  return names;
+}
+
+void require_safe_places(const SynthCommand& command) {
+  const std::vector<std::filesystem::path> made_up = names_in_folder(command);
+  require_new(made_up, command.overwrite);
+  std::vector<std::filesystem::path> outputs;
+  if (!made_up.empty()) outputs.push_back(made_up.front());  // one place stands for the folder
+  if (!command.sheet.empty()) {
+    require_ending(command.sheet, {".png"}, "a picture");
+    outputs.emplace_back(command.sheet);
+  }
+  if (!command.atlas.empty()) {
+    require_no_mesh_ending(command.atlas, "a file of mean crowns (--atlas)");
+    outputs.emplace_back(command.atlas);
+  }
+  const std::vector<std::filesystem::path> inputs = files_below(command.data);
+  require_separate_files(inputs, made_up);
+  require_safe_outputs(inputs, outputs);
+}
+
 void write_tooth(const SynthCommand& command, const ToothFamilies& families, int fdi, std::uint64_t seed,
                  Drawing& drawing) {
-  const std::filesystem::path folder = command.output;
   const bool right_side = is_right_side(fdi);
   const SyntheticTooth tooth = generate_tooth(families, tooth_type_of_fdi(fdi), seed);
   const CroppedCrown cropped = crop(command, tooth, seed);
   const MeshFile file = tooth_file(tooth, cropped.line, right_side);
-  const auto tooth_name = folder / fmt::format("tooth_{}_{}.ply", fdi, seed);
-  save_mesh(tooth_name, file);
-  fmt::print("{}: root {:.1f} mm, crown {:.1f} mm, {} root{}\n", tooth_name.string(), tooth.root_length,
-             tooth.crown_height, tooth.apices.size(), tooth.apices.size() == 1 ? "" : "s");
+  const auto tooth_name = file_name(command, "tooth", fdi, seed);
+  std::vector<OutputFile> files{{tooth_name, mesh_file_bytes(tooth_name, file)}};
   if (command.crowns) {
     MeshFile crown;
     crown.mesh = right_side ? mirrored(cropped.mesh) : cropped.mesh;
     if (command.edge_mm > 0) crown.mesh = scanner_mesh(crown.mesh, command.edge_mm, command.noise_mm, seed);
     for (Point& p : crown.mesh.vertices) p = nearest_float(p);
     crown.comments = file.comments;
-    save_mesh(folder / fmt::format("crown_{}_{}.{}", fdi, seed, command.crown_format), crown);
+    const auto crown_name = file_name(command, "crown", fdi, seed);
+    files.push_back({crown_name, mesh_file_bytes(crown_name, crown)});
     drawing.meshes.push_back(crown.mesh);
     drawing.colours.push_back({plain_colour()});
   }
+  write_output_files(files);
+  fmt::print("{}: root {:.1f} mm, crown {:.1f} mm, {} root{}\n", tooth_name.string(), tooth.root_length,
+             tooth.crown_height, tooth.apices.size(), tooth.apices.size() == 1 ? "" : "s");
   drawing.meshes.push_back(file.mesh);
   drawing.colours.push_back(colours_by_source(file.mesh, file.vertex_attributes.at(source_attribute).values));
 }
 
 void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
-  std::filesystem::create_directories(command.output);
   Drawing drawing;
   for (const int fdi : command.fdi)
     for (int i = 0; i < command.count; ++i)
@@ -131,7 +168,7 @@ void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
   std::vector<RenderItem> items;
   for (std::size_t i = 0; i < drawing.meshes.size(); ++i)
     items.push_back({&drawing.meshes[i], drawing.colours[i], Eigen::Vector3d::UnitZ().eval()});
-  write_file_atomically(command.sheet, encode_png(render(items, options)));
+  write_output_files({{command.sheet, encode_png(render(items, options))}});
 }
 
 // Tiles of a picture whose rows are teeth and whose columns are views, set side by side: `per_row` teeth to a row.
@@ -171,14 +208,12 @@ void write_contact_sheet(const SynthCommand& command, const ToothFamilies& famil
   for (const MeshFile& tooth : teeth)
     items.push_back({&tooth.mesh, colours_by_source(tooth.mesh, tooth.vertex_attributes.at(source_attribute).values),
                      Eigen::Vector3d::UnitZ().eval()});
-  write_file_atomically(command.sheet, encode_png(side_by_side(render(items, options), items.size(), count)));
+  write_output_files({{command.sheet, encode_png(side_by_side(render(items, options), items.size(), count))}});
   fmt::print("{}\n", command.sheet);
 }
 
 /// Crowns as they are cut from scans, skirts labelled.
 void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
-  const std::filesystem::path folder = command.output;
-  std::filesystem::create_directories(folder);
   for (const int fdi : command.fdi) {
     for (int i = 0; i < command.count; ++i) {
       const std::uint64_t seed = command.seed + static_cast<std::uint64_t>(i);
@@ -190,7 +225,7 @@ void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
       file.mesh = sample.mesh;
       file.vertex_attributes["tooth"] = {AttributeType::uint8, {sample.is_tooth.begin(), sample.is_tooth.end()}};
       file.comments = {"tooth: 1 on the tooth's surface, 0 skirt; made by rhizodont synth"};
-      const auto name = folder / fmt::format("skirt_{}_{}.ply", fdi, seed);
+      const auto name = file_name(command, "skirt", fdi, seed);
       save_mesh(name, file);
       fmt::print("{}: {} vertices, {} skirt\n", name.string(), sample.is_tooth.size(),
                  std::count(sample.is_tooth.begin(), sample.is_tooth.end(), 0));
@@ -202,6 +237,7 @@ void run(const SynthCommand& command) {
   if (command.output.empty() && command.atlas.empty() && command.sheet.empty())
     throw UsageError("Say where to: -o FOLDER for teeth, --sheet PNG for a picture, --atlas FILE for mean crowns.");
   if (!command.output.empty() && command.fdi.empty()) throw UsageError("Say which tooth: --type FDI, such as 36.");
+  require_safe_places(command);
   FamilyLoadOptions options;
   if (command.edge_mm > 0) options.vertices = 20000;  // finer than the scan to be made
   const ToothFamilies families = load_tooth_families(command.data, options);
@@ -237,6 +273,7 @@ void add_synth_command(CLI::App& app) {
   synth->add_option("--sheet", command->sheet,
                     "Draw what was made to this PNG; without -o: a contact sheet, --count teeth of each type");
   synth->add_option("--atlas", command->atlas, "Write mean crowns and anchors of all types to this safetensors file");
+  synth->add_flag("--overwrite", command->overwrite, "Teeth and crowns of the same names in the folder are replaced");
   synth->callback([command] { run(*command); });
 }
 

@@ -3,8 +3,11 @@
 #include "atlas/completion_sample.hpp"
 #include "commands.hpp"
 #include "learning/blas.hpp"
+#include "learning/safetensors.hpp"
 #include "learning/train_completion.hpp"
+#include "output_checks.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/output_files.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
@@ -12,7 +15,6 @@
 
 #include <algorithm>
 #include <ctime>
-#include <fstream>
 #include <memory>
 #include <string>
 
@@ -22,6 +24,7 @@ namespace {
 struct TrainCommand {
   std::string data;
   std::string export_to;
+  bool overwrite = false;
   CompletionSampleOptions samples;
   TrainingOptions options;
 };
@@ -67,15 +70,12 @@ void train(const TrainCommand& command) {
 }
 
 /// What the weights are, where they come from and what they must not be used for, beside the weight file.
-void write_model_card(const std::filesystem::path& weights, const std::map<std::string, std::string>& notes) {
+std::string model_card(const OutputFile& weights, const std::map<std::string, std::string>& notes) {
   const auto note = [&](const std::string& key) {
     const auto found = notes.find(key);
     return found == notes.end() ? std::string("not measured") : found->second;
   };
-  std::filesystem::path path = weights;
-  path.replace_extension(".md");
-  std::ofstream card(path);
-  card << fmt::format(
+  return fmt::format(
       R"(<!--
 SPDX-FileCopyrightText: Rhizodont contributors
 SPDX-License-Identifier: GPL-3.0-or-later
@@ -130,22 +130,28 @@ On {8} generated teeth that were never trained on (running mean of the weights):
 
 Figures on real teeth: `rhizodont evaluate`.
 )",
-      weights.filename().string(), static_cast<double>(std::filesystem::file_size(weights)) * 1e-6,
-      note("shape.input_points"), std::stoi(note("shape.queries")) * std::stoi(note("shape.patch_points")),
-      note("training.seed"), note("training.samples"), note("training.steps"), note("training.date"),
-      note("validation.samples"), note("validation.tooth_chamfer_l1_mm"), note("validation.root_chamfer_l1_mm"),
-      note("validation.depth_error_mm"), note("validation.normal_error_degrees"));
-  if (!card) throw InputError("The model card " + path.string() + " cannot be written.");
+      weights.path.filename().string(), static_cast<double>(weights.bytes.size()) * 1e-6, note("shape.input_points"),
+      std::stoi(note("shape.queries")) * std::stoi(note("shape.patch_points")), note("training.seed"),
+      note("training.samples"), note("training.steps"), note("training.date"), note("validation.samples"),
+      note("validation.tooth_chamfer_l1_mm"), note("validation.root_chamfer_l1_mm"), note("validation.depth_error_mm"),
+      note("validation.normal_error_degrees"));
 }
 
 void export_weights(const TrainCommand& command) {
   const std::filesystem::path path = command.export_to;
-  const auto notes = export_completion(
-      command.options.folder, path,
+  std::filesystem::path card = path;
+  card.replace_extension(".md");
+  require_no_mesh_ending(path, "a weight file");
+  require_new({card}, command.overwrite);
+  require_safe_outputs(files_below(command.options.folder), {path, card});
+  const TensorFile exported = export_completion(
+      command.options.folder,
       {{"training.date", fmt::format("{:%F}", fmt::localtime(std::time(nullptr)))},
        {"licence", "weights derived from \"Permanent Teeth\", University of Dundee School of Dentistry, CC BY 4.0"},
        {"use", "not for diagnosis"}});
-  write_model_card(path, notes);
+  const auto& notes = exported.metadata;
+  const OutputFile weights{path, safetensors_bytes(exported)};
+  write_output_files({weights, {card, model_card(weights, notes)}});
   fmt::print("{}: {} samples trained\n", path.string(), notes.at("training.samples"));
 }
 
@@ -198,6 +204,7 @@ void add_train_command(CLI::App& app) {
       ->capture_default_str();
   auto* export_to = train_app->add_option(
       "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");
+  train_app->add_flag("--overwrite", command->overwrite, "The export may replace an older model card");
   train_app->callback([command, data, export_to] {
     if (*export_to) {
       export_weights(*command);

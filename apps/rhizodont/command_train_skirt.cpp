@@ -3,9 +3,12 @@
 #include "atlas/skirt_sample.hpp"
 #include "commands.hpp"
 #include "learning/blas.hpp"
+#include "learning/safetensors.hpp"
 #include "learning/train_surface.hpp"
 #include "learning/training_sample.hpp"
+#include "output_checks.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/output_files.hpp"
 #include "skirt/skirt_features.hpp"
 
 #include <fmt/chrono.h>
@@ -13,7 +16,6 @@
 #include <malloc.h>
 
 #include <ctime>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <string>
@@ -24,6 +26,7 @@ namespace {
 struct TrainSkirtCommand {
   std::string data;
   std::string export_to;
+  bool overwrite = false;
   std::string measure;
   std::string inputs = "all";
   SkirtSampleOptions samples;
@@ -71,15 +74,12 @@ void train(TrainSkirtCommand command) {
 }
 
 /// What the weights are, where they come from and what they must not be used for, beside the weight file.
-void write_model_card(const std::filesystem::path& weights, const std::map<std::string, std::string>& notes) {
+std::string model_card(const OutputFile& weights, const std::map<std::string, std::string>& notes) {
   const auto note = [&](const std::string& key) {
     const auto found = notes.find(key);
     return found == notes.end() ? std::string("not measured") : found->second;
   };
-  std::filesystem::path path = weights;
-  path.replace_extension(".md");
-  std::ofstream card(path);
-  card << fmt::format(
+  return fmt::format(
       R"(<!--
 SPDX-FileCopyrightText: Rhizodont contributors
 SPDX-License-Identifier: GPL-3.0-or-later
@@ -118,21 +118,27 @@ border is cleaned:
 | accuracy over vertices | {11} |
 | intersection over union of the skirt | {12} |
 )",
-      weights.filename().string(), static_cast<double>(std::filesystem::file_size(weights)) * 1e-6,
-      note("shape.blocks"), note("shape.width"), note("shape.eigenvectors"), note("training.seed"),
-      note("training.samples"), note("training.steps"), note("training.pool"), note("training.date"),
-      note("validation.samples"), note("validation.accuracy"), note("validation.intersection_over_union"));
-  if (!card) throw InputError("The model card " + path.string() + " cannot be written.");
+      weights.path.filename().string(), static_cast<double>(weights.bytes.size()) * 1e-6, note("shape.blocks"),
+      note("shape.width"), note("shape.eigenvectors"), note("training.seed"), note("training.samples"),
+      note("training.steps"), note("training.pool"), note("training.date"), note("validation.samples"),
+      note("validation.accuracy"), note("validation.intersection_over_union"));
 }
 
 void export_weights(const TrainSkirtCommand& command) {
   const std::filesystem::path path = command.export_to;
-  const auto notes = export_surface(
-      command.options.folder, path,
+  std::filesystem::path card = path;
+  card.replace_extension(".md");
+  require_no_mesh_ending(path, "a weight file");
+  require_new({card}, command.overwrite);
+  require_safe_outputs(files_below(command.options.folder), {path, card});
+  const TensorFile exported = export_surface(
+      command.options.folder,
       {{"training.date", fmt::format("{:%F}", fmt::localtime(std::time(nullptr)))},
        {"licence", "weights derived from \"Permanent Teeth\", University of Dundee School of Dentistry, CC BY 4.0"},
        {"use", "not for diagnosis"}});
-  write_model_card(path, notes);
+  const auto& notes = exported.metadata;
+  const OutputFile weights{path, safetensors_bytes(exported)};
+  write_output_files({weights, {card, model_card(weights, notes)}});
   fmt::print("{}: {} samples trained\n", path.string(), notes.at("training.samples"));
 }
 
@@ -173,6 +179,7 @@ void add_train_skirt_command(CLI::App& app) {
   train_app->add_option("--measure", command->measure, "Train nothing: measure these weights on new held-out crowns");
   auto* export_to = train_app->add_option(
       "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");
+  train_app->add_flag("--overwrite", command->overwrite, "The export may replace an older model card");
   train_app->callback([command, data, export_to] {
     if (command->measure.empty() && command->options.folder.empty())
       throw UsageError("Training needs a folder for its checkpoints (--out).");

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/output_files.hpp"
+
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <optional>
+#include <filesystem>
 #include <string>
+#include <vector>
 
 namespace rhizodont::command_line {
 
@@ -18,10 +21,15 @@ class JsonOption {
   /// True if the table is to be printed: no --json, or --json with a file.
   bool wants_table() const;
 
-  /// Writes where the user asked; does nothing without the option.
-  void write(const nlohmann::ordered_json& json) const;
+  /// The file to be written, if any. Throws UsageError for the name of a mesh.
+  std::vector<std::filesystem::path> outputs() const;
+
+  /// That file with its contents, if any; to standard output it is printed.
+  std::vector<OutputFile> print_or_file(const nlohmann::ordered_json& json) const;
 
  private:
+  bool has_file() const;
+
   CLI::Option* option_ = nullptr;
   std::string file_;
 };

@@ -18,13 +18,16 @@ struct CheckOptions {
   /// Compare coordinates after rounding both to float: right where the tooth was stored as float, too lenient
   /// otherwise. Unset: as float if every coordinate of the tooth is a float, else exactly.
   std::optional<bool> compare_as_float;
-  /// Least share of the crown's triangles that must be found again, [0, 1]; at least one triangle is always demanded.
-  /// Skirt and a cap over the base may be dropped, but a tooth that keeps less than this is not the tooth of this
-  /// crown.
+  /// Least share of the crown's triangles (of those demanded) that must be found again, [0, 1]; at least one triangle
+  /// is always demanded. Skirt and a cap over the base may be dropped, but a tooth that keeps less than this is not the
+  /// tooth of this crown.
   double least_kept_share = 0.25;
   /// Triangles of the crown that a repair dropped, cut or turned over, as listed in the report: they count as kept in
   /// either orientation and are not demanded. In range.
   std::vector<int> repaired_triangles;
+  /// Vertices of the crown that are not the tooth's (cap, skirt), as listed in the report: triangles at them are not
+  /// demanded. In range.
+  std::vector<int> dropped_vertices;
 };
 
 /// Distances of the crown's vertices (those in use) from the tooth's surface, mm.
@@ -46,6 +49,7 @@ struct CrownCheck {
   std::int64_t kept_triangles = 0;          ///< of these, in the tooth with the same vertices in the same cyclic order
   std::int64_t repaired_triangles = 0;      ///< of those listed as repaired, not in the tooth as they stood
   double kept_share = 0;                    ///< kept_triangles / triangles
+  std::int64_t demanded_triangles = 0;      ///< of the crown, without those at vertices listed as dropped
   std::vector<int> broken_triangles;        ///< of the crown: all three vertices kept, triangle not in the tooth
   std::optional<CrownDeviation> deviation;  ///< nothing if the tooth has no surface
 

@@ -132,17 +132,6 @@ class CompletionModels {
   std::unique_ptr<Content> content_;
 };
 
-/// Version of the report's layout; the schema stands in docs/report.schema.json.
-inline constexpr int report_version = 2;
-
-/// The report on a completed tooth as JSON text. `input_file` and `input_bytes_sha256` say what was read; only the
-/// file's name goes into the report, not its folder. Schema: docs/report.schema.json.
-std::string completion_report(const CompletedTooth& tooth, const CompleteOptions& options,
-                              const std::filesystem::path& input_file, const std::string& input_bytes_sha256);
-
-/// SHA-256 of a file's bytes in lower-case hex. Throws InputError if it cannot be read.
-std::string sha256_of_file(const std::filesystem::path& file);
-
 /// The folder with the shipped models: $RHIZODONT_MODELS, else where they were installed, else the source tree's.
 std::filesystem::path default_models_folder();
 

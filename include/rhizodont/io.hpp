@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rhizodont/mesh.hpp"
+#include "rhizodont/output_files.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -52,6 +53,9 @@ struct MeshFile {
 /// True if every coordinate, rounded to float, is still the same number.
 bool coordinates_fit_float(const TriangleMesh& mesh);
 
+/// Rounds all coordinates to float, for formats that hold no more. Returns the farthest that this moved a vertex.
+double round_to_float(TriangleMesh& mesh);
+
 /// Reads STL (binary, text), PLY (text, binary of both byte orders; polygons, strips), OBJ, OFF, VTP (text, base64,
 /// raw; zlib, LZ4) and legacy VTK (POLYDATA, text and binary, to version 5). The content says which of them it is, the
 /// file's ending only where the content leaves it open. gzip around any of them is unpacked (to at most 1 GiB, and
@@ -67,25 +71,26 @@ bool coordinates_fit_float(const TriangleMesh& mesh);
 /// number, or an index that is not a vertex. What was mended or passed over stands in `notes`.
 MeshFile load_mesh(const std::filesystem::path& path);
 
+/// All bytes of a file or a pipe. Throws InputError, without the file's name, if it cannot be read.
+std::string read_file_bytes(const std::filesystem::path& path);
+
 /// As `load_mesh`, of bytes that are at hand, such as those of standard input. The hint is a file's name, its ending or
 /// a format's name ("crown.stl", ".stl", "stl"). Errors do not name the file.
 MeshFile read_mesh(std::string_view bytes, const std::filesystem::path& name_or_format_hint);
 
 /// Writes .ply (binary), .stl (binary), .obj or .glb by extension. Coordinates that all fit float are written as float
-/// bits, otherwise as double (PLY) or with all digits (OBJ). The file appears complete or not at all: it is written
-/// beside its place under another name and then renamed. Throws UsageError for another extension, for STL or GLB of a
-/// mesh whose coordinates do not fit float; InputError for an invalid mesh (index out of range, not finite, attribute
-/// of another length) or if the file cannot be written.
+/// bits, otherwise as double (PLY) or with all digits (OBJ). The file appears complete or not at all. Throws UsageError
+/// for another extension, for STL or GLB of a mesh whose coordinates do not fit float; InputError for an invalid mesh
+/// (index out of range, not finite, attribute of another length); OutputError if the file cannot be written.
 void save_mesh(const std::filesystem::path& path, const MeshFile& file);
 
-/// Whether `save_mesh` could write here, without writing. Throws UsageError for an extension that it does not know,
-/// InputError where no file can be made.
-void require_savable(const std::filesystem::path& path);
+/// What `save_mesh` would write, for `write_output_files` together with other files. Throws as `save_mesh`.
+std::string mesh_file_bytes(const std::filesystem::path& path, const MeshFile& file);
 
-/// Whether a file could be written here, without writing. Throws InputError if not.
-void require_writable_place(const std::filesystem::path& path);
+/// Throws UsageError unless a mesh can have this name: .ply, .stl, .obj or .glb.
+void require_mesh_ending(const std::filesystem::path& path);
 
-/// Writes bytes to a file that appears complete or not at all. Throws InputError if it cannot be written.
-void write_file_atomically(const std::filesystem::path& path, const std::string& bytes);
+/// Whether the format of this name holds no more than floats (STL, GLB).
+bool holds_floats_only(const std::filesystem::path& path);
 
 }  // namespace rhizodont

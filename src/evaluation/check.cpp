@@ -143,8 +143,14 @@ struct Comparison {
   std::vector<bool> touches_crown;  // per triangle of the tooth: one of its vertices is the crown's
 };
 
-Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as_float,
-                   const std::vector<int>& repaired_triangles) {
+/// Per element, whether it is listed.
+std::vector<bool> flags(std::size_t size, const std::vector<int>& listed) {
+  std::vector<bool> is_listed(size, false);
+  for (const int element : listed) is_listed[static_cast<std::size_t>(element)] = true;
+  return is_listed;
+}
+
+Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as_float, const CheckOptions& options) {
   Comparison found;
   CrownCheck& report = found.crown;
   report.compared_as_float = as_float;
@@ -164,8 +170,8 @@ Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as
       report.dropped_vertices.push_back(static_cast<int>(v));
   }
 
-  std::vector<bool> repaired(crown.triangles.size(), false);
-  for (const int t : repaired_triangles) repaired[static_cast<std::size_t>(t)] = true;
+  const std::vector<bool> repaired = flags(crown.triangles.size(), options.repaired_triangles);
+  const std::vector<bool> dropped = flags(crown.vertices.size(), options.dropped_vertices);
   const std::vector<Triangle> in_tooth = sorted_triangles(tooth, of_tooth);
   const auto is_in_tooth = [&](const Triangle& triangle) {
     return std::binary_search(in_tooth.begin(), in_tooth.end(), canonical(triangle, of_crown));
@@ -174,7 +180,11 @@ Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as
     const Triangle& triangle = crown.triangles[t];
     if (!has_three_corners(triangle)) continue;
     ++report.triangles;
-    if (!std::all_of(triangle.begin(), triangle.end(), is_kept)) continue;
+    const bool is_whole = std::all_of(triangle.begin(), triangle.end(), is_kept);
+    if (is_whole || std::none_of(triangle.begin(), triangle.end(),
+                                 [&](std::int32_t v) { return dropped[static_cast<std::size_t>(v)]; }))
+      ++report.demanded_triangles;
+    if (!is_whole) continue;
     if (is_in_tooth(triangle)) {
       ++report.kept_triangles;
     } else if (repaired[t]) {
@@ -231,13 +241,18 @@ SolidCheck check_solid(const TriangleMesh& tooth, const TriangleMesh& usable, co
   return solid;
 }
 
+double share_of_demanded(const CrownCheck& crown) {
+  return static_cast<double>(crown.kept_triangles) /
+         static_cast<double>(std::max<std::int64_t>(crown.demanded_triangles, 1));
+}
+
 void tell_crown_failures(const CrownCheck& crown, double least_kept_share, std::vector<std::string>& failures) {
   if (crown.kept_triangles == 0)
     failures.push_back("no triangle of the crown is in the tooth");
-  else if (crown.kept_share < least_kept_share)
+  else if (share_of_demanded(crown) < least_kept_share)
     failures.push_back(
         fmt::format("only {:.1f} % of the crown's triangles are in the tooth, at least {:.1f} % are demanded",
-                    100 * crown.kept_share, 100 * least_kept_share));
+                    100 * share_of_demanded(crown), 100 * least_kept_share));
   if (!crown.broken_triangles.empty())
     failures.push_back(
         fmt::format("{} triangles of the crown are not in the tooth although all their vertices are, the first is {}",
@@ -273,15 +288,17 @@ CheckReport check(const TriangleMesh& crown, const TriangleMesh& tooth, const Ch
   for (const int t : options.repaired_triangles)
     if (t < 0 || static_cast<std::size_t>(t) >= crown.triangles.size())
       throw UsageError(fmt::format("triangle {}, listed as repaired, is not one of the crown's", t));
+  for (const int v : options.dropped_vertices)
+    if (v < 0 || static_cast<std::size_t>(v) >= crown.vertices.size())
+      throw UsageError(fmt::format("vertex {}, listed as dropped, is not one of the crown's", v));
 
   const TriangleMesh usable = usable_part(tooth);
   const Diagnosis found = diagnose(tooth);
-  Comparison comparison =
-      compare(crown, usable, options.compare_as_float.value_or(all_floats(usable)), options.repaired_triangles);
+  Comparison comparison = compare(crown, usable, options.compare_as_float.value_or(all_floats(usable)), options);
   CheckReport report;
   report.crown = std::move(comparison.crown);
   if (has_surface(usable)) report.crown.deviation = deviation_from(usable, compact(crown).mesh.vertices);
-  report.crown.holds = report.crown.kept_triangles > 0 && report.crown.kept_share >= options.least_kept_share &&
+  report.crown.holds = report.crown.kept_triangles > 0 && share_of_demanded(report.crown) >= options.least_kept_share &&
                        report.crown.broken_triangles.empty();
   report.solid = check_solid(tooth, usable, found);
   report.new_triangles = new_triangle_figures(usable, comparison);

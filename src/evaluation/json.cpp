@@ -22,6 +22,7 @@ Json crown_json(const CrownCheck& crown) {
             {"kept_triangles", crown.kept_triangles},
             {"repaired_triangles", crown.repaired_triangles},
             {"kept_share", crown.kept_share},
+            {"demanded_triangles", crown.demanded_triangles},
             {"broken_triangles", crown.broken_triangles},
             {"deviation", nullptr}};
   if (crown.deviation)

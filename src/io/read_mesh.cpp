@@ -23,15 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string read_bytes(const fs::path& path) {
-  if (fs::is_directory(path)) throw InputError("this is a folder, not a file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("the file cannot be opened: {}", std::strerror(errno)));
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw InputError("the file cannot be read");
-  return bytes;
-}
-
 /// The ending of a name in lower case with its dot; also of a bare "ply" or ".ply". An ending ".gz" is passed over.
 std::string format_hint(fs::path name) {
   if (name.extension() == ".gz" || name.extension() == ".GZ") name = name.stem();
@@ -87,6 +78,15 @@ MeshFile read_as(MeshFormat format, std::string_view bytes) {
 
 }  // namespace
 
+std::string read_file_bytes(const fs::path& path) {
+  if (fs::is_directory(path)) throw InputError("this is a folder, not a file");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw InputError(fmt::format("the file cannot be opened: {}", std::strerror(errno)));
+  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
+  if (stream.bad()) throw InputError("the file cannot be read");
+  return bytes;
+}
+
 void finish_reading(MeshFile& file) {
   if (file.mesh.triangles.empty()) throw InputError("the file holds no triangles");
   if (file.mesh.vertices.size() > static_cast<std::size_t>(INT32_MAX) ||
@@ -117,7 +117,7 @@ MeshFile read_mesh(std::string_view bytes, const std::filesystem::path& name_or_
 
 MeshFile load_mesh(const std::filesystem::path& path) {
   try {
-    return read_mesh(read_bytes(path), path);
+    return read_mesh(read_file_bytes(path), path);
   } catch (const InputError& error) {
     throw InputError(path.string() + ": " + error.what(), error.elements());
   }

@@ -6,8 +6,20 @@
 
 #include "learning/weights.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/output_files.hpp"
 
 namespace rhizodont {
+
+void require_training_folder(const std::filesystem::path& folder, bool resume) {
+  if (folder.empty()) return;
+  for (const char* name : {checkpoint_name, best_name}) {
+    require_writable_place(folder / name);
+    if (!resume && std::filesystem::exists(folder / name))
+      throw UsageError("The folder " + folder.string() +
+                       " holds the weights of an earlier run, which would be lost: go on with it (--resume) or name "
+                       "another folder.");
+  }
+}
 
 void store_progress(const std::vector<TrainedTensor>& tensors, const TrainingProgress& progress, TensorFile& file) {
   for (const TrainedTensor& tensor : tensors) {

@@ -15,6 +15,14 @@
 
 namespace rhizodont {
 
+// Names in a training folder.
+inline constexpr const char* checkpoint_name = "checkpoint.safetensors";
+inline constexpr const char* best_name = "best.safetensors";
+
+/// A folder (empty: none is wanted) that can be written to and holds no weights of another run that this one would
+/// replace. Throws UsageError or OutputError.
+void require_training_folder(const std::filesystem::path& folder, bool resume);
+
 /// How far a training run has come.
 struct TrainingProgress {
   std::uint64_t samples = 0, steps = 0;

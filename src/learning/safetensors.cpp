@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "rhizodont/error.hpp"
+#include "rhizodont/output_files.hpp"
 
 namespace rhizodont {
 namespace {
@@ -233,7 +234,7 @@ TensorFile read_safetensors(const std::filesystem::path& path) {
   return file;
 }
 
-void write_safetensors(const std::filesystem::path& path, const TensorFile& file) {
+std::string safetensors_bytes(const TensorFile& file) {
   nlohmann::json table = nlohmann::json::object();
   if (!file.metadata.empty()) table["__metadata__"] = file.metadata;
   std::uint64_t offset = 0;
@@ -247,17 +248,16 @@ void write_safetensors(const std::filesystem::path& path, const TensorFile& file
   header.resize((header.size() + 7) / 8 * 8, ' ');  // keeps the data aligned for readers that map the file
   const std::uint64_t length = header.size();
 
-  std::filesystem::path beside = path;
-  beside += ".part";
-  std::ofstream stream(beside, std::ios::binary | std::ios::trunc);
-  stream.write(reinterpret_cast<const char*>(&length), sizeof length);
-  stream.write(header.data(), static_cast<std::streamsize>(header.size()));
+  std::string bytes(reinterpret_cast<const char*>(&length), sizeof length);
+  bytes.reserve(sizeof length + header.size() + offset);
+  bytes += header;
   for (const auto& [name, tensor] : file.tensors)
-    stream.write(reinterpret_cast<const char*>(tensor.bytes.data()), static_cast<std::streamsize>(tensor.bytes.size()));
-  stream.close();
-  std::error_code failure;
-  if (stream) std::filesystem::rename(beside, path, failure);
-  if (!stream || failure) throw InputError("The file " + path.string() + " cannot be written.");
+    bytes.append(reinterpret_cast<const char*>(tensor.bytes.data()), tensor.bytes.size());
+  return bytes;
+}
+
+void write_safetensors(const std::filesystem::path& path, const TensorFile& file) {
+  write_output_files({{path, safetensors_bytes(file)}});
 }
 
 }  // namespace rhizodont

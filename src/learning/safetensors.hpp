@@ -53,8 +53,10 @@ std::vector<std::int32_t> load_integers(const StoredTensor& tensor);
 /// that contradict shapes, data that overlaps or leaves gaps.
 TensorFile read_safetensors(const std::filesystem::path& path);
 
-/// Writes a safetensors file; the same content gives the same bytes. The file appears at once under its final name
-/// (written beside it and renamed), so that a stopped run leaves the old file intact. Throws InputError if the folder
+/// A safetensors file; the same content gives the same bytes.
+std::string safetensors_bytes(const TensorFile& file);
+
+/// Writes it as `write_output_files` does: a stopped run leaves the older file as it was. Throws OutputError if it
 /// cannot be written.
 void write_safetensors(const std::filesystem::path& path, const TensorFile& file);
 

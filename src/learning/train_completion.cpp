@@ -31,8 +31,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double unit_mm = 12;
-const char* const checkpoint_name = "checkpoint.safetensors";
-const char* const best_name = "best.safetensors";
 
 double minutes_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count() / 60; }
 
@@ -378,15 +376,13 @@ TrainingResult Trainer::run() {
 
 TrainingResult train_completion(const SampleProvider& provider, const TrainingOptions& options) {
   check_options(options);
-  if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
+  require_training_folder(options.folder, options.resume);
   // OpenMP's threads would wait in busy loops between the few moments when they have work.
   const TensorThreads one_thread(1);
   return Trainer(provider, options).run();
 }
 
-std::map<std::string, std::string> export_completion(const std::filesystem::path& folder,
-                                                     const std::filesystem::path& path,
-                                                     const std::map<std::string, std::string>& notes) {
+TensorFile export_completion(const std::filesystem::path& folder, const std::map<std::string, std::string>& notes) {
   TensorFile file;
   if (std::filesystem::exists(folder / best_name)) {
     file = read_safetensors(folder / best_name);
@@ -403,8 +399,7 @@ std::map<std::string, std::string> export_completion(const std::filesystem::path
   }
   read_shape(file.metadata);  // weights of an older network must not get out
   for (const auto& [key, text] : notes) file.metadata[key] = text;
-  write_safetensors(path, file);
-  return file.metadata;
+  return file;
 }
 
 }  // namespace rhizodont

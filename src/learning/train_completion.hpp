@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 
+#include "learning/safetensors.hpp"
 #include "learning/training_sample.hpp"
 
 namespace rhizodont {
@@ -90,11 +91,9 @@ struct TrainingResult {
 /// processes that lose each other.
 TrainingResult train_completion(const SampleProvider& provider, const TrainingOptions& options);
 
-/// Writes the weights of a training folder (`best.safetensors`, or the checkpoint's running mean if it was never
+/// The weights of a training folder (`best.safetensors`, or the checkpoint's running mean if it was never
 /// validated) as a file for CompletionNetwork::load, in half precision, with `notes` added to its metadata.
-/// Returns the metadata written. Throws InputError if the folder has no weights.
-std::map<std::string, std::string> export_completion(const std::filesystem::path& folder,
-                                                     const std::filesystem::path& path,
-                                                     const std::map<std::string, std::string>& notes);
+/// Throws InputError if the folder has no weights.
+TensorFile export_completion(const std::filesystem::path& folder, const std::map<std::string, std::string>& notes);
 
 }  // namespace rhizodont

@@ -26,8 +26,6 @@ namespace rhizodont {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-const char* const checkpoint_name = "checkpoint.safetensors";
-const char* const best_name = "best.safetensors";
 
 double minutes_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count() / 60; }
 
@@ -330,7 +328,7 @@ SurfaceTrainingResult SurfaceTrainer::run() {
 
 SurfaceTrainingResult train_surface(const SurfaceProvider& provider, const SurfaceTrainingOptions& options) {
   check_options(options);
-  if (!options.folder.empty()) std::filesystem::create_directories(options.folder);
+  require_training_folder(options.folder, options.resume);
   const TensorThreads one_thread(1);
   return SurfaceTrainer(provider, options).run();
 }
@@ -349,16 +347,13 @@ SurfaceFigures measure_surface(const SurfaceNetwork& network, const SurfaceProvi
   return counts.figures();
 }
 
-std::map<std::string, std::string> export_surface(const std::filesystem::path& folder,
-                                                  const std::filesystem::path& path,
-                                                  const std::map<std::string, std::string>& notes) {
+TensorFile export_surface(const std::filesystem::path& folder, const std::map<std::string, std::string>& notes) {
   if (!std::filesystem::exists(folder / best_name))
     throw InputError("The folder " + folder.string() + " has no weights to export.");
   TensorFile file = read_safetensors(folder / best_name);
   read_surface_shape(file.metadata);  // weights of another network must not get out
   for (const auto& [key, text] : notes) file.metadata[key] = text;
-  write_safetensors(path, file);
-  return file.metadata;
+  return file;
 }
 
 }  // namespace rhizodont

@@ -8,6 +8,7 @@
 #include <map>
 #include <string>
 
+#include "learning/safetensors.hpp"
 #include "learning/surface_network.hpp"
 #include "learning/surface_sample.hpp"
 
@@ -65,10 +66,8 @@ SurfaceTrainingResult train_surface(const SurfaceProvider& provider, const Surfa
 SurfaceFigures measure_surface(const SurfaceNetwork& network, const SurfaceProvider& provider, std::uint64_t first,
                                std::uint64_t count);
 
-/// Writes the weights of a training folder as a file for SurfaceNetwork::load, with `notes` added to its metadata.
-/// Returns the metadata written. Throws InputError if the folder has no weights.
-std::map<std::string, std::string> export_surface(const std::filesystem::path& folder,
-                                                  const std::filesystem::path& path,
-                                                  const std::map<std::string, std::string>& notes);
+/// The weights of a training folder as a file for SurfaceNetwork::load, with `notes` added to its metadata.
+/// Throws InputError if the folder has no weights.
+TensorFile export_surface(const std::filesystem::path& folder, const std::map<std::string, std::string>& notes);
 
 }  // namespace rhizodont

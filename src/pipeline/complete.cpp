@@ -16,6 +16,7 @@
 #include "pipeline/guiding_cloud.hpp"
 #include "pipeline/missed_promise.hpp"
 #include "pipeline/models.hpp"
+#include "pipeline/report_parts.hpp"
 #include "pipeline/stage_clock.hpp"
 #include "pipeline/take_crown.hpp"
 #include "rhizodont/check.hpp"
@@ -146,13 +147,13 @@ TriangleMesh in_input_unit(const TriangleMesh& tooth, const TriangleMesh& input,
   return result;
 }
 
-CheckReport prove_promises(const TriangleMesh& input, const TriangleMesh& tooth,
-                           const std::vector<RepairStep>& repairs) {
+/// As `check` does by the report: what a cap or a skirt was is not demanded, but repairs must leave the least share.
+CheckReport prove_promises(const TriangleMesh& input, const TriangleMesh& tooth, const CompletionRecord& record) {
   CheckOptions options;
-  for (const RepairStep& step : repairs)
+  options.dropped_vertices = vertices_not_of_tooth(record);
+  for (const RepairStep& step : record.repairs)
     options.repaired_triangles.insert(options.repaired_triangles.end(), step.triangles.begin(), step.triangles.end());
   options.compare_as_float = false;
-  options.least_kept_share = 1e-9;  // what was dropped, and why, stands in the record
   const CheckReport report = check(input, tooth, options);
   if (report.holds()) return report;
   std::string sentence = "No tooth was found that keeps the promises:";
@@ -198,7 +199,7 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   tooth.source.assign(tooth.mesh.vertices.size(), VertexSource::predicted);
   std::fill_n(tooth.source.begin(), crown.old_vertices.size(), VertexSource::scan);
   for (const int v : fused.transition.vertices) tooth.source[static_cast<std::size_t>(v)] = VertexSource::transition;
-  record.promises = prove_promises(input, tooth.mesh, record.repairs);
+  record.promises = prove_promises(input, tooth.mesh, record);
   for (std::string& missed : where_promise_three_is_missed(tooth.mesh, crown.old_vertices, crown.mesh.triangles.size(),
                                                            record.promises.new_triangles))
     record.warnings.push_back(std::move(missed));

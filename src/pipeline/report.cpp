@@ -1,17 +1,15 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
+#include "rhizodont/report.hpp"
+
 #include "evaluation/json.hpp"
-#include "rhizodont/complete.hpp"
+#include "pipeline/report_parts.hpp"
 #include "rhizodont/error.hpp"
 
-#include <openssl/evp.h>
 #include <nlohmann/json.hpp>
 
-#include <fmt/format.h>
-
-#include <array>
-#include <fstream>
+#include <algorithm>
 #include <map>
 
 namespace rhizodont {
@@ -110,27 +108,85 @@ Json stages_json(const std::vector<StageRecord>& stages) {
   return json;
 }
 
+Json input_json(const ReportedInput& input) {
+  return {{"file", input.file_name ? Json(*input.file_name) : Json(nullptr)},
+          {"sha256", input.sha256.empty() ? Json(nullptr) : Json(input.sha256)},
+          {"rounded_to_float_mm", input.rounded_mm ? Json(*input.rounded_mm) : Json(nullptr)}};
+}
+
+Json options_json(const CompleteOptions& options) {
+  return {{"fdi", options.fdi ? Json(*options.fdi) : Json(nullptr)},
+          {"e_mm", options.e},
+          {"repair", options.repair},
+          {"skirt", options.skirt ? Json(*options.skirt) : Json("keep")},
+          {"cap", options.cap == CapHandling::keep ? "keep" : "drop"},
+          {"millimetres_per_unit", options.millimetres_per_unit},
+          {"transition_mm", options.transition ? Json(*options.transition) : Json(nullptr)},
+          {"steering", steering_json(options.steering)},
+          {"threads", options.threads}};
+}
+
+/// What every report begins with.
+Json heading() {
+  return {{"report_version", report_version}, {"program", {{"name", "rhizodont"}, {"version", RHIZODONT_VERSION}}}};
+}
+
+std::string text_of(const Json& json) {
+  // Names need not be UTF-8; what is not is shown by a replacement character.
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// What the sentence of an error says that its ids are.
+Json kind_of_ids(const std::string& sentence) {
+  for (const char* kind : {"pairs of vertices", "pairs of triangles", "vertices", "triangles"})
+    if (sentence.find(kind) != std::string::npos) return kind;
+  return nullptr;
+}
+
+const char* kind_of(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::wrong_usage:
+      return "wrong usage";
+    case ErrorCode::unusable_input:
+      return "unusable input";
+    case ErrorCode::no_result:
+      return "no result that keeps the promises";
+    case ErrorCode::unwritable:
+      return "results cannot be written";
+    case ErrorCode::internal:
+      break;
+  }
+  return "fault of the program";
+}
+
+Json refusal_json(const Error& error) {
+  return {{"exit_code", static_cast<int>(error.code())},
+          {"kind", kind_of(error.code())},
+          {"sentence", error.what()},
+          {"ids_are", error.elements().empty() ? Json(nullptr) : kind_of_ids(error.what())},
+          {"ids", error.elements()}};
+}
+
 }  // namespace
 
-std::string completion_report(const CompletedTooth& tooth, const CompleteOptions& options,
-                              const std::filesystem::path& input_file, const std::string& input_bytes_sha256) {
+std::vector<int> vertices_not_of_tooth(const CompletionRecord& record) {
+  std::vector<int> vertices;
+  for (const DroppedCrownVertex& dropped : record.dropped_vertices)
+    if (std::none_of(record.repairs.begin(), record.repairs.end(),
+                     [&](const RepairStep& step) { return step.action == dropped.reason; }))
+      vertices.push_back(dropped.vertex);
+  return vertices;
+}
+
+std::string completion_report(const CompletedTooth& tooth, const CompleteOptions& options, const ReportedInput& input) {
   const CompletionRecord& record = tooth.record;
-  const Json json{
-      {"report_version", report_version},
-      {"program", {{"name", "rhizodont"}, {"version", RHIZODONT_VERSION}}},
+  Json json = heading();
+  json.update({
       {"model", record.model},
       {"skirt_model", record.skirt_model},
       {"notice", "A predicted root is not the patient's anatomy. For research and visualisation only."},
-      {"input", {{"file", input_file.filename().string()}, {"sha256", input_bytes_sha256}}},
-      {"options",
-       {{"e_mm", options.e},
-        {"repair", options.repair},
-        {"skirt", options.skirt ? Json(*options.skirt) : Json("keep")},
-        {"cap", options.cap == CapHandling::keep ? "keep" : "drop"},
-        {"millimetres_per_unit", options.millimetres_per_unit},
-        {"transition_mm", options.transition ? Json(*options.transition) : Json(nullptr)},
-        {"steering", steering_json(options.steering)},
-        {"threads", options.threads}}},
+      {"input", input_json(input)},
+      {"options", options_json(options)},
       {"fdi", {{"number", record.fdi}, {"guessed", record.fdi_guessed}}},
       {"frame", frame_json(record)},
       {"crown", crown_json(record)},
@@ -141,24 +197,18 @@ std::string completion_report(const CompletedTooth& tooth, const CompleteOptions
       {"promises", record.promises},
       {"stages", stages_json(record.stages)},
       {"warnings", record.warnings},
-  };
-  return json.dump(1) + "\n";
+  });
+  return text_of(json);
 }
 
-std::string sha256_of_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("The file {} cannot be read.", file.string()));
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
-  EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
-  std::array<char, 1 << 16> buffer;
-  while (stream.read(buffer.data(), buffer.size()) || stream.gcount() > 0)
-    EVP_DigestUpdate(context.get(), buffer.data(), static_cast<std::size_t>(stream.gcount()));
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-  unsigned int length = 0;
-  EVP_DigestFinal_ex(context.get(), digest.data(), &length);
-  std::string hex;
-  for (unsigned int i = 0; i < length; ++i) hex += fmt::format("{:02x}", digest[i]);
-  return hex;
+std::string completion_refusal_report(const Error& error, const CompleteOptions& options, const ReportedInput& input,
+                                      const std::vector<std::string>& warnings) {
+  Json json = heading();
+  json.update({{"input", input_json(input)},
+               {"options", options_json(options)},
+               {"refused", refusal_json(error)},
+               {"warnings", warnings}});
+  return text_of(json);
 }
 
 }  // namespace rhizodont

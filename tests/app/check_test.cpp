@@ -231,6 +231,25 @@ TEST(Check, TheLeastShareIsAnOption) {
   EXPECT_THROW(check(skirted, pair.tooth, options), UsageError);
 }
 
+TEST(Check, WhatTheReportListsAsDroppedIsNotDemanded) {
+  const Pair pair = good_pair();
+  const TriangleMesh skirted = together(pair.crown, grid(16), {30, 0, 0});
+  CheckOptions options;
+  options.least_kept_share = 1;
+  EXPECT_FALSE(check(skirted, pair.tooth, options).holds());
+  for (std::size_t v = pair.crown.vertices.size(); v < skirted.vertices.size(); ++v)
+    options.dropped_vertices.push_back(static_cast<int>(v));
+  const CheckReport report = check(skirted, pair.tooth, options);
+  EXPECT_TRUE(report.holds()) << all_failures(report);
+  EXPECT_EQ(report.crown.demanded_triangles, static_cast<std::int64_t>(pair.crown.triangles.size()));
+  EXPECT_EQ(report.crown.triangles, static_cast<std::int64_t>(skirted.triangles.size()));
+  // what is not listed stays demanded
+  options.dropped_vertices.resize(options.dropped_vertices.size() / 2);
+  expect_failure(check(skirted, pair.tooth, options), "% of the crown's triangles are in the tooth");
+  options.dropped_vertices = {static_cast<int>(skirted.vertices.size())};
+  EXPECT_THROW(check(skirted, pair.tooth, options), UsageError);
+}
+
 TEST(Check, DeviationFallsIntoTheBinsOfTable3) {
   // points above the middle of the top face of a cube, at known distances
   TriangleMesh crown;

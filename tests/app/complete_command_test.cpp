@@ -32,11 +32,15 @@ class Complete : public test::Program {
     std::ofstream(file(name), std::ios::binary) << bytes;
   }
 
-  /// Ends with exit 3, says `words` in one line, and writes nothing.
+  /// Ends with exit 3, says `words` in one line and in the report, and writes no tooth.
   void expect_refused(const std::string& name, const std::string& words) const {
     expect_error("complete " + name + " --fdi 36 -o tooth.ply --report tooth.json", 3, words);
     EXPECT_FALSE(fs::exists(file("tooth.ply"))) << name;
-    EXPECT_FALSE(fs::exists(file("tooth.json"))) << name;
+    const auto report = nlohmann::json::parse(std::ifstream(file("tooth.json")));
+    EXPECT_EQ(report["refused"]["exit_code"], 3);
+    EXPECT_NE(report["refused"]["sentence"].get<std::string>().find(words), std::string::npos) << report;
+    EXPECT_EQ(report["input"]["sha256"].is_null(), !fs::exists(file(name)));
+    fs::remove(file("tooth.json"));
   }
 };
 
@@ -144,8 +148,8 @@ TEST_F(Complete, WrongUsage) {
   expect_error("complete " + crown + " --fdi 34 --cap cut -o tooth.ply", 2, "cut");
   expect_error("complete " + crown + " --fdi 34 -o tooth.doc", 2, "doc");
   expect_error("complete missing.ply --fdi 34 -o tooth.doc", 2, "doc");  // before any work
-  expect_error("complete missing.ply --fdi 34 -o nowhere/tooth.ply", 3, "nowhere");
-  expect_error("complete missing.ply --fdi 34 -o tooth.ply --report nowhere/report.json", 3, "nowhere");
+  expect_error("complete missing.ply --fdi 34 -o /proc/nowhere/tooth.ply", 6, "nowhere");
+  expect_error("complete missing.ply --fdi 34 -o tooth.ply --report /proc/nowhere/report.json", 6, "nowhere");
   EXPECT_FALSE(fs::exists(file("tooth.ply")));
 }
 

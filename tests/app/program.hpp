@@ -25,10 +25,12 @@ struct Outcome {
 
 class Program : public ::testing::Test {
  protected:
-  Outcome run(const std::string& arguments) const {
+  /// `before_the_program`: shell words such as "timeout 1" or "cat FILE |".
+  Outcome run(const std::string& arguments, const std::string& before_the_program = {}) const {
     const fs::path out = logs_.path() / "out", error = logs_.path() / "error";
-    const std::string command = "cd '" + folder.path().string() + "' && '" RHIZODONT_PROGRAM "' " + arguments + " > '" +
-                                out.string() + "' 2> '" + error.string() + "' < /dev/null";
+    const std::string command = "cd '" + folder.path().string() + "' && exec < /dev/null && " + before_the_program +
+                                " '" RHIZODONT_PROGRAM "' " + arguments + " > '" + out.string() + "' 2> '" +
+                                error.string() + "'";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_all(out), read_all(error)};
   }

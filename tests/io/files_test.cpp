@@ -23,13 +23,13 @@ TEST(Files, UnknownExtensionsAreNotWritten) {
     EXPECT_THROW(save_mesh(folder.path() / name, cube_file()), UsageError);
 }
 
-TEST(Files, MissingFileAndFolderAreInputErrors) {
+TEST(Files, MissingFilesAndFoldersAreErrors) {
   const TemporaryFolder folder;
   EXPECT_THROW(load_mesh(folder.path() / "none.ply"), InputError);
   fs::create_directory(folder.path() / "folder.ply");
   EXPECT_THROW(load_mesh(folder.path() / "folder.ply"), InputError);
-  EXPECT_THROW(save_mesh(folder.path() / "folder.ply", cube_file()), InputError);
-  EXPECT_THROW(save_mesh(folder.path() / "no" / "such" / "place.ply", cube_file()), InputError);
+  EXPECT_THROW(save_mesh(folder.path() / "folder.ply", cube_file()), OutputError);
+  EXPECT_THROW(save_mesh("/proc/no/such/place.ply", cube_file()), OutputError);
   EXPECT_EQ(folder.file_count(), 1U);
 }
 

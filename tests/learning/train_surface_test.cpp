@@ -67,7 +67,7 @@ TEST_F(SurfaceTraining, LearnsWhatIsEasy) {
   const SurfaceTrainingResult result = train_surface(provider, o);
   EXPECT_GT(result.best.accuracy, 0.9);
   EXPECT_GT(result.best.intersection, 0.8);
-  export_surface(o.folder, folder_ / "weights.safetensors", {{"note", "a test"}});
+  write_safetensors(folder_ / "weights.safetensors", export_surface(o.folder, {{"note", "a test"}}));
   const SurfaceNetwork network = SurfaceNetwork::load(folder_ / "weights.safetensors");
   EXPECT_EQ(network.metadata().at("note"), "a test");
   const SurfaceFigures again = measure_surface(network, provider, std::uint64_t{1} << 40, 2);
@@ -100,7 +100,7 @@ TEST_F(SurfaceTraining, RefusesWhatDoesNotFit) {
   o.batch = 3;
   o.threads = 2;
   EXPECT_THROW(train_surface(bowl_sample, o), UsageError);
-  EXPECT_THROW(export_surface(folder_, folder_ / "w.safetensors", {}), InputError);
+  EXPECT_THROW(export_surface(folder_, {}), InputError);
   o = options("other");
   o.samples = 2;
   train_surface(bowl_sample, o);

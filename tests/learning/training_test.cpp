@@ -37,8 +37,9 @@ class Training : public ::testing::Test {
   /// Weights of a short run.
   CompletionNetwork short_run(TrainingOptions options) const {
     options.folder = folder_ / "short";
+    std::filesystem::remove_all(options.folder);
     train_completion(testing::tiny_sample, options);
-    export_completion(options.folder, folder_ / "weights.safetensors", {{"note", "a test"}});
+    write_safetensors(folder_ / "weights.safetensors", export_completion(options.folder, {{"note", "a test"}}));
     return CompletionNetwork::load(folder_ / "weights.safetensors");
   }
 };
@@ -186,12 +187,12 @@ TEST_F(Training, ValidationKeepsTheBestWeights) {
   EXPECT_GT(result.best_root_chamfer, 0);
   EXPECT_TRUE(std::any_of(lines.begin(), lines.end(),
                           [](const std::string& line) { return line.starts_with("validation at 40"); }));
-  const auto notes = export_completion(options.folder, folder_ / "weights.safetensors", {{"note", "kept"}});
+  const TensorFile weights = export_completion(options.folder, {{"note", "kept"}});
+  const auto& notes = weights.metadata;
   EXPECT_EQ(notes.at("note"), "kept");
   EXPECT_EQ(notes.at("training.samples"), "40");
   EXPECT_NEAR(std::stod(notes.at("validation.root_chamfer_l1_mm")), result.best_root_chamfer, 6e-4);
-  for (const auto& [name, tensor] : read_safetensors(folder_ / "weights.safetensors").tensors)
-    EXPECT_EQ(tensor.type, TensorType::float16) << name;
+  for (const auto& [name, tensor] : weights.tensors) EXPECT_EQ(tensor.type, TensorType::float16) << name;
 }
 
 TEST_F(Training, ValidationSamplesAreNeverTrainedOn) {
@@ -218,7 +219,7 @@ TEST_F(Training, RefusesOptionsAndFoldersThatDoNotFit) {
   options = testing::tiny_options();
   options.shape.width = 33;
   EXPECT_THROW(train_completion(testing::tiny_sample, options), UsageError);
-  EXPECT_THROW(export_completion(folder_, folder_ / "weights.safetensors", {}), InputError);
+  EXPECT_THROW(export_completion(folder_, {}), InputError);
 
   options = testing::tiny_options();
   options.samples = 4;

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+#include "rhizodont/report.hpp"
+
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <set>
+
+namespace rhizodont {
+namespace {
+
+/// From the file's numbers of vertices to those of the mesh that was read.
+class VerticesOfFile {
+ public:
+  explicit VerticesOfFile(const std::vector<int>& file_vertices) {
+    for (std::size_t v = 0; v < file_vertices.size(); ++v) numbers_.emplace(file_vertices[v], static_cast<int>(v));
+  }
+
+  int in_mesh(int number) const { return numbers_.empty() ? number : numbers_.at(number); }
+
+ private:
+  std::map<int, int> numbers_;
+};
+
+ExcusedByReport excused(const nlohmann::json& report, const std::vector<int>& file_vertices) {
+  ExcusedByReport result;
+  std::set<std::string> repairs;
+  for (const auto& step : report.at("repairs")) {
+    repairs.insert(step.at("action").get<std::string>());
+    for (const auto& id : step.at("triangles")) result.repaired_triangles.push_back(id.get<int>());
+  }
+  const VerticesOfFile vertices(file_vertices);
+  for (const auto& [reason, ids] : report.at("crown").at("dropped_vertices_by_reason").items())
+    if (!repairs.contains(reason))
+      for (const auto& id : ids) result.dropped_vertices.push_back(vertices.in_mesh(id.get<int>()));
+  return result;
+}
+
+}  // namespace
+
+ExcusedByReport excused_by_report(const std::filesystem::path& report, const std::string& crown_sha256,
+                                  const std::vector<int>& file_vertices) {
+  std::string text;
+  try {
+    text = read_file_bytes(report);
+  } catch (const InputError& error) {
+    throw InputError(report.string() + ": " + error.what());
+  }
+  try {
+    const auto json = nlohmann::json::parse(text);
+    if (json.at("input").at("sha256").get<std::string>() != crown_sha256)
+      throw InputError(fmt::format("{} is the report on another crown.", report.string()));
+    if (json.contains("refused"))
+      throw InputError(fmt::format("{} says that this crown was refused: there is no tooth of it.", report.string()));
+    return excused(json, file_vertices);
+  } catch (const nlohmann::json::exception&) {
+    throw InputError(fmt::format("{} is not a report of rhizodont complete.", report.string()));
+  } catch (const std::out_of_range&) {
+    throw InputError(fmt::format("{} names vertices that the crown does not have.", report.string()));
+  }
+}
+
+std::string sha256_of_bytes(std::string_view bytes) {
+  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
+  unsigned int length = 0;
+  EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
+  EVP_DigestUpdate(context.get(), bytes.data(), bytes.size());
+  EVP_DigestFinal_ex(context.get(), digest.data(), &length);
+  std::string hex;
+  for (unsigned int i = 0; i < length; ++i) hex += fmt::format("{:02x}", digest[i]);
+  return hex;
+}
+
+}  // namespace rhizodont

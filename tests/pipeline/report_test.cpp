@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rhizodont/report.hpp"
+
+#include "common/temporary_folder.hpp"
+#include "pipeline/product_models.hpp"
+#include "pipeline/report_parts.hpp"
+#include "rhizodont/io.hpp"
+#include "rhizodont/tooth_file.hpp"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <numeric>
+
+namespace rhizodont {
+namespace {
+
+using nlohmann::json;
+using test::for_tooth, test::models, test::source_folder;
+
+json schema() { return json::parse(std::ifstream(source_folder / "docs/report.schema.json")); }
+
+/// All that a part of the schema asks for is there.
+void expect_required(const json& report, const json& names, const json& properties) {
+  for (const auto& name : names) {
+    ASSERT_TRUE(report.contains(name)) << name;
+    const json& part = properties[name.get<std::string>()];
+    if (!part.contains("required")) continue;
+    for (const auto& inner : part["required"])
+      EXPECT_TRUE(report[name.get<std::string>()].contains(inner.get<std::string>())) << name << " " << inner;
+  }
+}
+
+TEST(Report, HasWhatTheSchemaAsksFor) {
+  const auto file = source_folder / "samples/crown_34.ply";
+  const MeshFile crown = load_mesh(file);
+  const CompletedTooth tooth = complete_tooth(crown.mesh, models(), for_tooth(34));
+  ReportedInput input;
+  input.sha256 = sha256_of_bytes(read_file_bytes(file));
+  auto report = json::parse(completion_report(tooth, for_tooth(34), input));
+  const json wanted = schema();
+  expect_required(report, wanted["else"]["required"], wanted["properties"]);
+  EXPECT_EQ(report.size(), wanted["else"]["required"].size());
+  EXPECT_EQ(report["report_version"], wanted["properties"]["report_version"]["const"]);
+  EXPECT_EQ(report["input"]["sha256"].get<std::string>().size(), 64U);
+  EXPECT_EQ(report["crown"]["kept_vertices"].size(), tooth.record.kept_vertices.size());
+  EXPECT_GT(report["stages"].size(), 4U);
+  EXPECT_TRUE(report["input"]["file"].is_null()) << "names of files tell of patients";
+  input.file_name = "caf\xe9_34.ply";  // Latin-1, no UTF-8
+  report = json::parse(completion_report(tooth, for_tooth(34), input));
+  EXPECT_EQ(report["input"]["file"], "caf\xef\xbf\xbd_34.ply");
+}
+
+TEST(Report, OfARefusedCrownSaysWhyAndWhere) {
+  std::vector<std::int64_t> ids(210);
+  std::iota(ids.begin(), ids.end(), 0);
+  const ReportedInput input;
+  const auto report = json::parse(
+      completion_refusal_report(InputError("These vertices are wrong.", ids), for_tooth(34), input, {"welded"}));
+  const json wanted = schema();
+  expect_required(report, wanted["then"]["required"], wanted["properties"]);
+  const json& refused = report["refused"];
+  EXPECT_EQ(refused["exit_code"], 3);
+  EXPECT_EQ(refused["sentence"], "These vertices are wrong.");
+  EXPECT_EQ(refused["ids_are"], "vertices");
+  ASSERT_EQ(refused["ids"].size(), 210U);
+  EXPECT_EQ(refused["ids"][209], 209);
+  EXPECT_EQ(report["warnings"], json({"welded"}));
+  EXPECT_TRUE(report["input"]["sha256"].is_null());
+  const auto triangles = json::parse(completion_refusal_report(
+      InputError("The surface cuts itself (pairs of triangles).", {4, 5}), for_tooth(34), input));
+  EXPECT_EQ(triangles["refused"]["ids_are"], "pairs of triangles");
+  EXPECT_EQ(triangles["refused"]["ids"], json({4, 5}));
+}
+
+TEST(Report, WhatItExcusesIsReadBackInTheMeshsNumbers) {
+  CompletedTooth tooth;
+  tooth.record.dropped_vertices = {{1, "cap"}, {2, "merged"}, {3, "skirt"}};
+  tooth.record.repairs = {{"merged", {2}, {}}, {"turned over", {}, {7, 8}}};
+  EXPECT_EQ(vertices_not_of_tooth(tooth.record), (std::vector<int>{1, 3}));
+  ReportedInput input;
+  input.sha256 = std::string(64, 'a');
+  // as a file numbers them in which vertices were split
+  MeshFile crown;
+  crown.file_vertices = {0, 4, 5, 9};
+  refer_to_file(tooth.record, crown, "tooth.ply");
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("report.json", completion_report(tooth, for_tooth(34), input));
+  const ExcusedByReport excused = excused_by_report(file, input.sha256, crown.file_vertices);
+  EXPECT_EQ(excused.dropped_vertices, (std::vector<int>{1, 3}));
+  EXPECT_EQ(excused.repaired_triangles, (std::vector<int>{7, 8}));
+  EXPECT_THROW(excused_by_report(file, std::string(64, 'b'), crown.file_vertices), InputError);
+  EXPECT_THROW(excused_by_report(file, input.sha256, {0, 1}), InputError);
+  EXPECT_THROW(excused_by_report(folder.write("other.json", "{}"), input.sha256, {}), InputError);
+  EXPECT_THROW(excused_by_report(folder.path() / "none.json", input.sha256, {}), InputError);
+  const auto refused =
+      folder.write("refused.json", completion_refusal_report(NoResultError("No."), for_tooth(34), input));
+  EXPECT_THROW(excused_by_report(refused, input.sha256, {}), InputError);
+}
+
+TEST(Report, HashByTheStandardsExample) {
+  EXPECT_EQ(sha256_of_bytes("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+}  // namespace
+}  // namespace rhizodont
