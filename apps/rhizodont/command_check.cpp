@@ -13,7 +13,6 @@
 
 #include <memory>
 #include <string>
-#include <utility>
 
 namespace rhizodont::command_line {
 namespace {
@@ -48,6 +47,9 @@ void print_table(const CheckReport& report) {
   row("crown triangles kept",
       fmt::format("{} of {} ({:.3f} %)", crown.kept_triangles, crown.triangles, 100 * crown.kept_share));
   row("crown triangles broken", crown.broken_triangles.size());
+  if (crown.merged_vertices > 0)
+    row("crown vertices merged across seams",
+        fmt::format("{}, at most {:.6f} mm apart", crown.merged_vertices, crown.merged_distance_max));
   if (crown.repaired_triangles > 0) row("crown triangles repaired", crown.repaired_triangles);
   row("crown vertices kept", fmt::format("{} of {}", crown.kept_vertices, crown.vertices));
   row("crown vertices dropped", crown.dropped_vertices.size());
@@ -85,10 +87,11 @@ void run(const CheckCommand& command) {
   const MeshFile tooth = load_mesh(command.tooth);
   CheckOptions options = command.options;
   if (!command.report.empty()) {
-    ExcusedByReport excused =
+    const ExcusedByReport excused =
         excused_by_report(command.report, sha256_of_bytes(read_file_bytes(command.crown)), crown.file_vertices);
-    options.repaired_triangles = std::move(excused.repaired_triangles);
-    options.dropped_vertices = std::move(excused.dropped_vertices);
+    options = allowing_for(excused.repairs);
+    options.least_kept_share = command.options.least_kept_share;
+    options.dropped_vertices = excused.dropped_vertices;
   }
   const CheckReport report = check(crown.mesh, tooth.mesh, options);
   if (command.json.wants_table()) print_table(report);

@@ -4,6 +4,7 @@
 
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/quality.hpp"
+#include "rhizodont/repair_step.hpp"
 
 #include <array>
 #include <cstdint>
@@ -28,7 +29,13 @@ struct CheckOptions {
   /// Vertices of the crown that are not the tooth's (cap, skirt), as listed in the report: triangles at them are not
   /// demanded. In range.
   std::vector<int> dropped_vertices;
+  /// Vertices of the crown that a repair merged across a seam, each with the one that stands in its place, as listed in
+  /// the report: triangles are demanded with that one. In range.
+  std::vector<std::array<int, 2>> merged_vertices;
 };
+
+/// Options that excuse what these repairs list, no more; else the defaults.
+CheckOptions allowing_for(const std::vector<RepairStep>& repairs);
 
 /// Distances of the crown's vertices (those in use) from the tooth's surface, mm.
 struct CrownDeviation {
@@ -45,6 +52,8 @@ struct CrownCheck {
   std::int64_t vertices = 0;                ///< of the crown that a triangle uses
   std::int64_t kept_vertices = 0;           ///< of these, found in the tooth with the same bits (-0 = +0)
   std::vector<int> dropped_vertices;        ///< of these, not found: skirt, cap or repaired defects
+  std::int64_t merged_vertices = 0;         ///< of these, another one stands in their place as listed
+  double merged_distance_max = 0;           ///< mm, between a merged vertex and the one in its place
   std::int64_t triangles = 0;               ///< of the crown, with three different vertices
   std::int64_t kept_triangles = 0;          ///< of these, in the tooth with the same vertices in the same cyclic order
   std::int64_t repaired_triangles = 0;      ///< of those listed as repaired, not in the tooth as they stood

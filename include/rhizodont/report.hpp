@@ -35,8 +35,8 @@ std::string completion_refusal_report(const Error& error, const CompleteOptions&
 
 /// What `check` excuses, as the report on a completed tooth lists it.
 struct ExcusedByReport {
-  std::vector<int> repaired_triangles;  ///< of the crown
-  std::vector<int> dropped_vertices;    ///< of the crown, as not the tooth's: cap, skirt; none that a repair dropped
+  std::vector<RepairStep> repairs;
+  std::vector<int> dropped_vertices;  ///< of the crown, as not the tooth's: cap, skirt; none that a repair dropped
 };
 
 /// Reads that from a report. `file_vertices`: of the crown's MeshFile. Throws InputError if it is no report on a

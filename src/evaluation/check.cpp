@@ -150,6 +150,22 @@ std::vector<bool> flags(std::size_t size, const std::vector<int>& listed) {
   return is_listed;
 }
 
+// Places at which another one stands in get that one's number; places by number, in and out.
+void stand_in_for_merged(const TriangleMesh& crown, const std::vector<std::array<int, 2>>& merged,
+                         std::vector<int>& of_crown, CrownCheck& report) {
+  if (merged.empty()) return;
+  std::vector<int> stand_in(static_cast<std::size_t>(*std::max_element(of_crown.begin(), of_crown.end())) + 1);
+  std::iota(stand_in.begin(), stand_in.end(), 0);
+  for (const auto& [v, other] : merged) {
+    stand_in[static_cast<std::size_t>(of_crown[static_cast<std::size_t>(v)])] =
+        of_crown[static_cast<std::size_t>(other)];
+    report.merged_distance_max = std::max(
+        report.merged_distance_max,
+        (crown.vertices[static_cast<std::size_t>(v)] - crown.vertices[static_cast<std::size_t>(other)]).norm());
+  }
+  for (int& place : of_crown) place = stand_in[static_cast<std::size_t>(place)];
+}
+
 Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as_float, const CheckOptions& options) {
   Comparison found;
   CrownCheck& report = found.crown;
@@ -157,14 +173,18 @@ Comparison compare(const TriangleMesh& crown, const TriangleMesh& tooth, bool as
   Places places(as_float);
   const std::vector<int> of_tooth = places.number_all(tooth);
   const auto places_of_tooth = static_cast<int>(places.size());
-  const std::vector<int> of_crown = places.number_all(crown);
+  const std::vector<int> place_in_crown = places.number_all(crown);
+  std::vector<int> of_crown = place_in_crown;
+  stand_in_for_merged(crown, options.merged_vertices, of_crown, report);
   const auto is_kept = [&](std::int32_t v) { return of_crown[static_cast<std::size_t>(v)] < places_of_tooth; };
 
   const std::vector<bool> used = vertices_in_use(crown);
   for (std::size_t v = 0; v < used.size(); ++v) {
     if (!used[v]) continue;
     ++report.vertices;
-    if (is_kept(static_cast<std::int32_t>(v)))
+    if (of_crown[v] != place_in_crown[v])
+      ++report.merged_vertices;
+    else if (is_kept(static_cast<std::int32_t>(v)))
       ++report.kept_vertices;
     else
       report.dropped_vertices.push_back(static_cast<int>(v));
@@ -279,6 +299,16 @@ void tell_solid_failures(const SolidCheck& solid, const Diagnosis& found, std::v
 
 }  // namespace
 
+CheckOptions allowing_for(const std::vector<RepairStep>& repairs) {
+  CheckOptions options;
+  for (const RepairStep& step : repairs) {
+    options.repaired_triangles.insert(options.repaired_triangles.end(), step.triangles.begin(), step.triangles.end());
+    for (std::size_t k = 0; k < step.merged_into.size(); ++k)
+      options.merged_vertices.push_back({step.vertices[k], step.merged_into[k]});
+  }
+  return options;
+}
+
 CheckReport check(const TriangleMesh& crown, const TriangleMesh& tooth, const CheckOptions& options) {
   if (!(options.least_kept_share >= 0 && options.least_kept_share <= 1))
     throw UsageError("the least share of the crown to be kept lies between 0 and 1");
@@ -291,6 +321,11 @@ CheckReport check(const TriangleMesh& crown, const TriangleMesh& tooth, const Ch
   for (const int v : options.dropped_vertices)
     if (v < 0 || static_cast<std::size_t>(v) >= crown.vertices.size())
       throw UsageError(fmt::format("vertex {}, listed as dropped, is not one of the crown's", v));
+
+  for (const auto& pair : options.merged_vertices)
+    for (const int v : pair)
+      if (v < 0 || static_cast<std::size_t>(v) >= crown.vertices.size())
+        throw UsageError(fmt::format("vertex {}, listed as merged, is not one of the crown's", v));
 
   const TriangleMesh usable = usable_part(tooth);
   const Diagnosis found = diagnose(tooth);

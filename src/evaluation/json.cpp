@@ -18,6 +18,8 @@ Json crown_json(const CrownCheck& crown) {
             {"vertices", crown.vertices},
             {"kept_vertices", crown.kept_vertices},
             {"dropped_vertices", crown.dropped_vertices},
+            {"merged_vertices", crown.merged_vertices},
+            {"merged_distance_max_mm", crown.merged_distance_max},
             {"triangles", crown.triangles},
             {"kept_triangles", crown.kept_triangles},
             {"repaired_triangles", crown.repaired_triangles},

@@ -12,12 +12,19 @@
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/mesh_checks.hpp"
+#include "mesh/pieces.hpp"
+#include "mesh/places.hpp"
 #include "mesh/self_intersection.hpp"
+#include "mesh/tunnels.hpp"
 #include "rhizodont/error.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <numbers>
 #include <numeric>
 
 namespace rhizodont {
@@ -32,31 +39,24 @@ std::vector<bool> used_vertices(const TriangleMesh& mesh) {
   return used;
 }
 
-/// Per vertex the lowest one at the same place (-0 = +0).
-Ids first_at_place(const std::vector<Point>& points) {
-  Ids order(points.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto at = [&](int v) -> const Point& { return points[static_cast<std::size_t>(v)]; };
-  std::sort(order.begin(), order.end(), [&](int i, int j) {
-    if (at(i) == at(j)) return i < j;
-    return std::lexicographical_compare(at(i).data(), at(i).data() + 3, at(j).data(), at(j).data() + 3);
-  });
-  Ids first(points.size());
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const bool same = k > 0 && at(order[k]) == at(order[k - 1]);
-    first[static_cast<std::size_t>(order[k])] = same ? first[static_cast<std::size_t>(order[k - 1])] : order[k];
-  }
-  return first;
-}
-
 /// The mesh under repair. Each step returns the input's numbers of the triangles that it changed.
 class Workpiece {
  public:
-  explicit Workpiece(const TriangleMesh& mesh) : mesh_(mesh), origin_(mesh.triangles.size()) {
+  explicit Workpiece(const TriangleMesh& mesh)
+      : mesh_(mesh), origin_(mesh.triangles.size()), stands_for_(mesh.vertices.size()) {
     std::iota(origin_.begin(), origin_.end(), 0);
+    std::iota(stands_for_.begin(), stands_for_.end(), 0);
   }
 
   const TriangleMesh& mesh() const { return mesh_; }
+  const Ids& origin() const { return origin_; }
+
+  /// The vertex that took the place of v across seams, or v itself.
+  int stand_in(int v) const {
+    while (stands_for_[static_cast<std::size_t>(v)] != v) v = stands_for_[static_cast<std::size_t>(v)];
+    return v;
+  }
+  double widest_seam_mm() const { return widest_seam_mm_; }
 
   Ids merge_vertices() {
     const Ids first = first_at_place(mesh_.vertices);
@@ -64,6 +64,18 @@ class Workpiece {
       for (std::int32_t& v : t) v = first[static_cast<std::size_t>(v)];
     return {};
   }
+
+  Ids merge_seams(const SeamOptions& options) {
+    const Seams seams = find_seams(mesh_, options);
+    widest_seam_mm_ = std::max(widest_seam_mm_, seams.largest_mm);
+    for (Triangle& t : mesh_.triangles)
+      for (std::int32_t& v : t) v = seams.target[static_cast<std::size_t>(v)];
+    for (std::size_t v = 0; v < seams.target.size(); ++v)
+      if (seams.target[v] != static_cast<int>(v)) stands_for_[v] = seams.target[v];
+    return {};
+  }
+
+  Ids drop_inward_copies();
 
   /// Repeated corners, no area, or the same corners as an earlier triangle.
   Ids drop_bad_triangles() {
@@ -78,21 +90,20 @@ class Workpiece {
   Ids thin_out_crowded_edges();
   Ids orient();
 
-  Ids keep_largest_piece() {
-    const ConnectedComponents pieces = connected_components(mesh_);
-    if (pieces.count <= 1) return {};
-    std::vector<double> area(static_cast<std::size_t>(pieces.count), 0);
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
-      area[static_cast<std::size_t>(pieces.of_triangle[t])] += triangle_area(mesh_, t);
-    const auto largest = std::max_element(area.begin(), area.end()) - area.begin();
-    std::vector<bool> others;
-    for (const int piece : pieces.of_triangle) others.push_back(piece != largest);
-    return drop(others);
+  /// Throws InputError where another piece is of like size.
+  Ids drop_pieces(PieceKind kind) {
+    const Pieces pieces = sort_pieces(mesh_);
+    if (pieces.count(PieceKind::like) > 0) throw InputError(describe_pieces(mesh_, pieces));
+    std::vector<bool> which;
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) which.push_back(pieces.kind_of(t) == kind);
+    return drop(which);
   }
 
   Ids drop_touching_vertices() { return drop_vertices(diagnose(mesh_).non_manifold_vertices); }
   Ids drop_spikes(const RepairOptions& options);
 
+  /// Cuts one tunnel of a piece that has no other defect left.
+  Ids cut_tunnel() { return diagnose(mesh_).is_oriented_manifold() ? drop_vertices(short_handle_loop(mesh_)) : Ids{}; }
   Ids drop_cuts(double most_share) {
     Ids cutting;
     for (const auto& [a, b] : self_intersecting_triangles(mesh_))
@@ -134,8 +145,53 @@ class Workpiece {
   bool lies_on_edge(int v, int a, int b) const;
 
   TriangleMesh mesh_;
-  Ids origin_;  // per triangle: the input's triangle that it is or is part of
+  Ids origin_;      // per triangle: the input's triangle that it is or is part of
+  Ids stands_for_;  // per vertex: the one merged with it across a seam, or itself
+  double widest_seam_mm_ = 0;
 };
+
+/// Of triangles that are there once each way the copy goes that does not face as its piece does, outward.
+Ids Workpiece::drop_inward_copies() {
+  const auto sorted = [](Triangle t) {
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  const auto is_even = [](const Triangle& t) { return (t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0]) == 2; };
+  struct Copies {
+    int first = -1, other_way = -1;
+  };
+  std::map<Triangle, Copies> places;
+  bool any = false;
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    const Triangle& c = mesh_.triangles[t];
+    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
+    Copies& copies = places[sorted(c)];
+    if (copies.first < 0) {
+      copies.first = static_cast<int>(t);
+    } else if (is_even(c) != is_even(mesh_.triangles[static_cast<std::size_t>(copies.first)])) {
+      copies.other_way = static_cast<int>(t);
+      any = true;
+    }
+  }
+  if (!any) return {};
+  TriangleMesh once{mesh_.vertices, {}};
+  std::vector<Copies> of_once;
+  for (const auto& [key, copies] : places) {
+    once.triangles.push_back(mesh_.triangles[static_cast<std::size_t>(copies.first)]);
+    of_once.push_back(copies);
+  }
+  std::vector<bool> which(mesh_.triangles.size(), false);
+  Workpiece one_sided(once);
+  one_sided.thin_out_crowded_edges();
+  one_sided.orient();
+  for (std::size_t k = 0; k < one_sided.origin_.size(); ++k) {
+    const auto o = static_cast<std::size_t>(one_sided.origin_[k]);
+    if (of_once[o].other_way < 0) continue;
+    const bool turned = is_even(one_sided.mesh_.triangles[k]) != is_even(once.triangles[o]);
+    which[static_cast<std::size_t>(turned ? of_once[o].first : of_once[o].other_way)] = true;
+  }
+  return drop(which);
+}
 
 bool Workpiece::lies_on_edge(int v, int a, int b) const {
   const Point& p = mesh_.vertices[static_cast<std::size_t>(a)];
@@ -219,7 +275,7 @@ Patches find_patches(const EdgeTable& table, std::size_t triangles) {
 }
 
 /// Patches end at crowded edges. The smaller ones give way, one after the other, as long as an edge of theirs is
-/// crowded; an edge at which one patch meets itself loses all its triangles.
+/// crowded; an edge at which one patch meets itself, or which hardly joins two of like size, loses all its triangles.
 Ids Workpiece::thin_out_crowded_edges() {
   const EdgeTable table = edge_table(mesh_);
   Ids count(table.size(), 0);
@@ -248,10 +304,24 @@ Ids Workpiece::thin_out_crowded_edges() {
   std::stable_sort(order.begin(), order.end(),
                    [&](std::size_t x, std::size_t y) { return patches.size[x] < patches.size[y]; });
   order.pop_back();
+  std::vector<double> area(patches.size.size(), 0), crowded_length(patches.size.size(), 0);
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
+    area[patch_of(static_cast<int>(t))] += triangle_area(mesh_, t);
+  for (std::size_t p = 0; p < crowded_in_patch.size(); ++p)
+    for (const std::size_t e : crowded_in_patch[p])
+      crowded_length[p] += (mesh_.vertices[static_cast<std::size_t>(table.vertices[e][0])] -
+                            mesh_.vertices[static_cast<std::size_t>(table.vertices[e][1])])
+                               .norm();
+  // A wall across a crown hangs on all of its rim, at least that of a disc; a second crown hangs on by an edge or two.
+  const double largest = *std::max_element(area.begin(), area.end());
+  const auto is_crown = [&](std::size_t p) {
+    return area[p] >= PieceOptions{}.like_share * largest &&
+           crowded_length[p] * crowded_length[p] < 0.1 * 4 * std::numbers::pi * area[p];
+  };
   std::vector<bool> gone(patches.size.size(), false);
   for (const std::size_t p : order) {
     const auto& edges = crowded_in_patch[p];
-    if (std::none_of(edges.begin(), edges.end(), [&](std::size_t e) { return count[e] > 2; })) continue;
+    if (is_crown(p) || std::none_of(edges.begin(), edges.end(), [&](std::size_t e) { return count[e] > 2; })) continue;
     gone[p] = true;
     for (const std::size_t e : edges) --count[e];
   }
@@ -333,6 +403,8 @@ Ids Workpiece::drop_spikes(const RepairOptions& options) {
   return drop_vertices(spikes);
 }
 
+constexpr const char* seam_action = "merged across a seam";
+
 /// Does the steps one after the other and keeps the book of what they did.
 class Repair {
  public:
@@ -345,7 +417,7 @@ class Repair {
       throw InputError("Nothing is left of the crown once its defects are repaired.");
     Submesh rest = compact(piece_.mesh());
     keep_to_the_point(rest.old_vertices);
-    return {std::move(rest.mesh), std::move(rest.old_vertices), std::move(steps_)};
+    return {std::move(rest.mesh), std::move(rest.old_vertices), piece_.origin(), std::move(steps_)};
   }
 
  private:
@@ -353,14 +425,18 @@ class Repair {
     bool any = false;
     const auto step = [&](const char* action, const std::function<Ids()>& work) { any |= note(action, work); };
     step("vertex merged with another one at the same place", [&] { return piece_.merge_vertices(); });
+    step("inward copy of a triangle dropped (double-sided)", [&] { return piece_.drop_inward_copies(); });
     step("triangle dropped: without area, or there twice", [&] { return piece_.drop_bad_triangles(); });
+    step(seam_action, [&] { return piece_.merge_seams(options_.seam); });
     step("triangle cut at vertices on its edge (T-junction)", [&] { return piece_.close_t_junctions(); });
     step("dropped at an edge with more than two triangles", [&] { return piece_.thin_out_crowded_edges(); });
-    step("separate piece dropped", [&] { return piece_.keep_largest_piece(); });
+    step("speck dropped", [&] { return piece_.drop_pieces(PieceKind::speck); });
+    step("separate piece dropped", [&] { return piece_.drop_pieces(PieceKind::small); });
     step("triangle turned over", [&] { return piece_.orient(); });
     step("dropped where the surface touches itself", [&] { return piece_.drop_touching_vertices(); });
     step("spike dropped", [&] { return piece_.drop_spikes(options_); });
-    // The costly step waits until the others have nothing left to do.
+    // The costly steps wait until the others have nothing left to do.
+    if (!any) step("tunnel cut along its shortest loop", [&] { return piece_.cut_tunnel(); });
     if (!any) step("dropped where the surface cuts itself", [&] { return piece_.drop_cuts(options_.most_cut_share); });
     return any;
   }
@@ -382,11 +458,16 @@ class Repair {
 
   /// Lists only those triangles all of whose corners' places are left: the others went with their corners.
   void keep_to_the_point(const Ids& kept_vertices) {
-    const Ids place = first_at_place(input_.vertices);
+    Ids place = first_at_place(input_.vertices);
+    for (int& p : place) p = piece_.stand_in(p);
     std::vector<bool> is_left(input_.vertices.size(), false);
     for (const int v : kept_vertices) is_left[static_cast<std::size_t>(place[static_cast<std::size_t>(v)])] = true;
     for (RepairStep& step : steps_) {
       std::sort(step.vertices.begin(), step.vertices.end());
+      if (step.action == seam_action) {
+        for (const int v : step.vertices) step.merged_into.push_back(piece_.stand_in(v));
+        step.action += fmt::format(", at most {:.2g} mm apart", piece_.widest_seam_mm());
+      }
       std::sort(step.triangles.begin(), step.triangles.end());
       step.triangles.erase(std::unique(step.triangles.begin(), step.triangles.end()), step.triangles.end());
       std::erase_if(step.triangles, [&](int t) {

@@ -3,8 +3,11 @@
 
 #include "pipeline/closed_crown.hpp"
 
+#include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
+#include "pipeline/crown_input.hpp"
 #include "rhizodont/error.hpp"
+#include "skirt/made_cap.hpp"
 #include "skirt/skirt.hpp"
 
 #include <tbb/parallel_for.h>
@@ -119,6 +122,15 @@ std::vector<Candidate> for_unknown_type(const TriangleMesh& crown, const Atlas& 
 }  // namespace
 
 Cap recognise_cap(const TriangleMesh& closed_crown, const Atlas& atlas, std::optional<int> fdi) {
+  if (auto is_cap = find_made_cap(closed_crown)) {
+    Eigen::Vector3d out = Eigen::Vector3d::Zero();
+    for (std::size_t t = 0; t < is_cap->size(); ++t)
+      if ((*is_cap)[t]) out += triangle_area_vector(closed_crown, t);
+    Cap cap = describe_cap(closed_crown, std::move(*is_cap), -out.normalized());
+    cap.made = true;
+    return cap;
+  }
+  require_no_root(closed_crown);
   std::vector<Candidate> candidates =
       fdi ? for_known_type(closed_crown, atlas, *fdi) : for_unknown_type(closed_crown, atlas);
   sort_by_badness(candidates);

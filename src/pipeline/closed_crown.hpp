@@ -10,7 +10,8 @@
 
 namespace rhizodont {
 
-/// Recognises the cap of a closed crown whose axis is not known. Axes are tried in all directions; the one is taken
+/// Recognises the cap of a closed crown whose axis is not known: by the triangles that programs close a base with, or
+/// else by its form. Then axes are tried in all directions; the one is taken
 /// whose cap looks most like a cap and that leaves a crown most like the mean crown of its type (of any type without
 /// an FDI number). Deterministic.
 /// Throws InputError where nothing is a cap: a ball, a whole tooth.

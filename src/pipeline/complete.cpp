@@ -149,10 +149,8 @@ TriangleMesh in_input_unit(const TriangleMesh& tooth, const TriangleMesh& input,
 
 /// As `check` does by the report: what a cap or a skirt was is not demanded, but repairs must leave the least share.
 CheckReport prove_promises(const TriangleMesh& input, const TriangleMesh& tooth, const CompletionRecord& record) {
-  CheckOptions options;
+  CheckOptions options = allowing_for(record.repairs);
   options.dropped_vertices = vertices_not_of_tooth(record);
-  for (const RepairStep& step : record.repairs)
-    options.repaired_triangles.insert(options.repaired_triangles.end(), step.triangles.begin(), step.triangles.end());
   options.compare_as_float = false;
   const CheckReport report = check(input, tooth, options);
   if (report.holds()) return report;

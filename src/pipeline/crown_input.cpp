@@ -8,6 +8,8 @@
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/handles.hpp"
+#include "mesh/pieces.hpp"
+#include "mesh/seams.hpp"
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
 
@@ -26,6 +28,31 @@ std::vector<std::int64_t> flat_ids(const std::vector<std::array<int, 2>>& edges)
 
 std::vector<std::int64_t> widened(const std::vector<int>& ids) { return {ids.begin(), ids.end()}; }
 
+/// Whether most triangles stand once each way over the same vertices: a surface with an inner side of its own.
+bool is_double_sided(const TriangleMesh& mesh, const Diagnosis& found) {
+  const EdgeTable table = edge_table(mesh);
+  std::size_t both_ways = 0;  // edges that triangles run through in both directions more than once
+  for (std::size_t e = 0; e < table.size(); ++e) both_ways += table.triangle_count(e) >= 4;
+  return 2 * both_ways > table.size() && 5 * found.duplicate_triangles.size() > 2 * mesh.triangles.size();
+}
+
+/// Says what keeps a mesh of several pieces from being one crown.
+void require_one_piece(const TriangleMesh& crown) {
+  const Pieces pieces = sort_pieces(crown);
+  if (pieces.kinds.size() <= 1) return;
+  const Seams seams = find_seams(crown);
+  if (seams.merged > 0) {
+    TriangleMesh merged = crown;
+    for (Triangle& t : merged.triangles)
+      for (std::int32_t& v : t) v = seams.target[static_cast<std::size_t>(v)];
+    if (sort_pieces(merged).count(PieceKind::like) == 0)
+      throw InputError(fmt::format(
+          "The crown falls into {} pieces along seams whose sides do not meet: they are up to {:.2g} mm apart.",
+          pieces.kinds.size(), seams.largest_mm));
+  }
+  throw InputError(describe_pieces(crown, pieces));
+}
+
 /// Largest extent of the box, in whatever unit the mesh has.
 double extent(const TriangleMesh& mesh) {
   Eigen::AlignedBox3d box;  // of what triangles use
@@ -33,6 +60,8 @@ double extent(const TriangleMesh& mesh) {
     for (const int v : t) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
   return box.sizes().maxCoeff();
 }
+
+constexpr const char* inside_out = "The crown is inside out: its triangles face inwards and have to be turned over.";
 
 /// Refuses what is open towards the root in more than one place: one root alone would be joined to one of them.
 void require_one_opening(const TriangleMesh& open_crown) {
@@ -58,6 +87,8 @@ void require_one_opening(const TriangleMesh& open_crown) {
 
 constexpr double smallest_tooth = 2;  // mm
 constexpr double largest_tooth = 20;
+constexpr double longest_crown = 15;  // mm: molars are up to 13 across, canines 11 high
+constexpr double longest_whole_tooth = 45;
 
 struct Unit {
   const char* name;
@@ -78,6 +109,8 @@ Diagnosis require_readable_crown(const TriangleMesh& crown) {
                      widened(d.out_of_range_triangles));
   if (!d.repeated_index_triangles.empty())
     throw InputError("The crown has triangles that name one vertex twice.", widened(d.repeated_index_triangles));
+  if (is_double_sided(crown, d))
+    throw InputError("The mesh is double-sided: its triangles are there twice, once facing outwards and once inwards.");
   return d;
 }
 
@@ -89,14 +122,29 @@ Diagnosis require_usable_crown(const TriangleMesh& crown) {
   if (!d.misoriented_edges.empty())
     throw InputError("Some triangles of the crown are flipped against their neighbours (edges as pairs of vertices).",
                      flat_ids(d.misoriented_edges));
-  if (const int pieces = connected_components(crown).count; pieces > 1)
-    throw InputError(fmt::format("The mesh consists of {} separate pieces: give one crown.", pieces));
+  require_one_piece(crown);
+  if (d.border_edges.empty() && d.volume < 0) throw InputError(inside_out);
   return d;
 }
 
-void require_tooth_size(const TriangleMesh& crown, double millimetres_per_unit) {
+void require_no_root(const TriangleMesh& closed_crown) {
+  const double size = extent(closed_crown);
+  if (size < longest_crown || size > longest_whole_tooth) return;
+  throw InputError(
+      fmt::format("The mesh is closed and {:.0f} mm long, a crown is up to {:.0f} mm: this tooth has its root already, "
+                  "or a part of it. "
+                  "To give it another one, cut it off below the crown and leave the cut open.",
+                  size, longest_crown));
+}
+
+void require_one_crown(const TriangleMesh& crown) {
+  const Pieces pieces = sort_pieces(crown);
+  if (pieces.count(PieceKind::like) > 0) throw InputError(describe_pieces(crown, pieces));
+}
+
+void require_tooth_size(const TriangleMesh& crown, double millimetres_per_unit, bool closed) {
   const double size = extent(crown);
-  if (size >= smallest_tooth && size <= largest_tooth) return;
+  if (size >= smallest_tooth && size <= (closed ? longest_whole_tooth : largest_tooth)) return;
   const double raw = size / millimetres_per_unit;
   std::string hint;
   for (const Unit& unit : other_units)
@@ -108,7 +156,7 @@ void require_tooth_size(const TriangleMesh& crown, double millimetres_per_unit) 
 }
 
 void require_outward_and_uncut(const TriangleMesh& open_crown) {
-  if (cone_volume(open_crown) <= 0) throw InputError("The crown's triangles face inwards: turn them over.");
+  if (cone_volume(open_crown) <= 0) throw InputError(inside_out);
   if (const int handles = handle_count(open_crown); handles > 0)
     throw InputError(fmt::format("The crown has {} handles, bridges over gaps or tunnels: a tooth has none.", handles));
   require_one_opening(open_crown);
@@ -116,7 +164,12 @@ void require_outward_and_uncut(const TriangleMesh& open_crown) {
   if (cuts.empty()) return;
   std::vector<std::int64_t> ids;
   for (const auto& [a, b] : cuts) ids.insert(ids.end(), {a, b});
-  throw InputError("The crown's surface cuts itself (pairs of triangles).", ids);
+  constexpr std::size_t many = 50;
+  throw InputError(cuts.size() < many
+                       ? "The crown's surface cuts itself (pairs of triangles)."
+                       : "The crown's surface cuts itself in many places, as noisy scans do: smooth it a "
+                         "little, or scan again (pairs of triangles).",
+                   ids);
 }
 
 }  // namespace rhizodont

@@ -12,6 +12,8 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <stdexcept>
+#include <utility>
 
 namespace rhizodont {
 namespace {
@@ -29,14 +31,24 @@ class VerticesOfFile {
   std::map<int, int> numbers_;
 };
 
+std::vector<int> ids_of(const nlohmann::json& step, const char* name, const VerticesOfFile& vertices) {
+  std::vector<int> ids;
+  for (const auto& id : step.at(name)) ids.push_back(vertices.in_mesh(id.get<int>()));
+  return ids;
+}
+
 ExcusedByReport excused(const nlohmann::json& report, const std::vector<int>& file_vertices) {
   ExcusedByReport result;
   std::set<std::string> repairs;
-  for (const auto& step : report.at("repairs")) {
-    repairs.insert(step.at("action").get<std::string>());
-    for (const auto& id : step.at("triangles")) result.repaired_triangles.push_back(id.get<int>());
-  }
   const VerticesOfFile vertices(file_vertices);
+  for (const auto& json : report.at("repairs")) {
+    RepairStep step{json.at("action"), ids_of(json, "vertices", vertices), json.at("triangles"), {}};
+    if (json.contains("merged_into")) step.merged_into = ids_of(json, "merged_into", vertices);
+    if (!step.merged_into.empty() && step.merged_into.size() != step.vertices.size())
+      throw std::out_of_range("merged_into");
+    repairs.insert(step.action);
+    result.repairs.push_back(std::move(step));
+  }
   for (const auto& [reason, ids] : report.at("crown").at("dropped_vertices_by_reason").items())
     if (!repairs.contains(reason))
       for (const auto& id : ids) result.dropped_vertices.push_back(vertices.in_mesh(id.get<int>()));

@@ -39,8 +39,10 @@ Json crown_json(const CompletionRecord& record) {
 
 Json repairs_json(const std::vector<RepairStep>& repairs) {
   Json json = Json::array();
-  for (const RepairStep& step : repairs)
+  for (const RepairStep& step : repairs) {
     json.push_back({{"action", step.action}, {"vertices", step.vertices}, {"triangles", step.triangles}});
+    if (!step.merged_into.empty()) json.back()["merged_into"] = step.merged_into;
+  }
   return json;
 }
 

@@ -5,6 +5,7 @@
 
 #include "mesh/adjacency.hpp"
 #include "mesh/diagnosis.hpp"
+#include "mesh/pieces.hpp"
 #include "mesh/repair.hpp"
 #include "pipeline/closed_crown.hpp"
 #include "pipeline/crown_input.hpp"
@@ -34,15 +35,30 @@ struct Tools {
 /// The part of the crown that is kept so far: open at the base, its border made of simple loops.
 KeptCrown open_crown(const TriangleMesh& crown, bool closed, const Atlas& atlas, const CompleteOptions& options,
                      CompletionRecord& record) {
-  std::vector<bool> keep(crown.triangles.size(), true);
+  std::vector<bool> keep(crown.triangles.size(), true), never;
   if (closed) {
     if (options.cap == CapHandling::keep)
       throw InputError("The crown is closed and its cap was to be kept: there is no place for a root.");
     const Cap cap = recognise_cap(crown, atlas, options.fdi);
     for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = !cap.is_cap[t];
+    if (cap.made) never = cap.is_cap;
     record.cap_dropped = true;
   }
-  return keep_crown(crown, keep, closed ? "cap" : "skirt");
+  return keep_crown(crown, keep, closed ? "cap" : "skirt", never);
+}
+
+/// Lists the triangles that are not kept although all their corners are: of a cap between vertices of the border.
+void list_dropped_triangles(const TriangleMesh& crown, const KeptCrown& kept, CompletionRecord& record) {
+  std::vector<bool> is_left(crown.vertices.size(), false), is_kept(crown.triangles.size(), false);
+  for (const int v : kept.old_vertices) is_left[static_cast<std::size_t>(v)] = true;
+  for (const int t : kept.old_triangles) is_kept[static_cast<std::size_t>(t)] = true;
+  RepairStep step{"cap between vertices of the crown's border dropped", {}, {}};
+  for (std::size_t t = 0; t < crown.triangles.size(); ++t) {
+    const Triangle& c = crown.triangles[t];
+    if (!is_kept[t] && std::all_of(c.begin(), c.end(), [&](int v) { return is_left[static_cast<std::size_t>(v)]; }))
+      step.triangles.push_back(static_cast<int>(t));
+  }
+  if (!step.triangles.empty()) record.repairs.push_back(std::move(step));
 }
 
 /// Reduces what is kept further, to the triangles of kept.mesh with a true entry in `keep`.
@@ -67,16 +83,20 @@ std::vector<float> numbered_as_before(const std::vector<float>& of_part, const s
   return confidence;
 }
 
-/// What is kept of a part of the crown, with all triangles of the whole crown between its vertices. Vertices outside of
-/// the part are dropped as its ragged border.
+/// What is kept of a part of the crown, with all triangles of the whole crown between its vertices but those that were
+/// left out of the part on purpose (a cap between them). Vertices outside of the part are dropped as its ragged border.
 KeptCrown all_between(const TriangleMesh& crown, const Submesh& part, const KeptCrown& kept) {
-  std::vector<bool> is_kept(crown.vertices.size(), false);
+  std::vector<bool> is_kept(crown.vertices.size(), false), never(crown.triangles.size(), false);
   for (const int v : kept.old_vertices)
     is_kept[static_cast<std::size_t>(part.old_vertices[static_cast<std::size_t>(v)])] = true;
+  for (const int t : part.old_triangles) never[static_cast<std::size_t>(t)] = true;
+  for (const int t : kept.old_triangles)
+    never[static_cast<std::size_t>(part.old_triangles[static_cast<std::size_t>(t)])] = false;
   std::vector<bool> keep;
   for (const Triangle& t : crown.triangles)
     keep.push_back(std::all_of(t.begin(), t.end(), [&](int v) { return is_kept[static_cast<std::size_t>(v)]; }));
-  KeptCrown whole = keep_crown(crown, keep, "ragged border");
+  for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = keep[t] && !never[t];
+  KeptCrown whole = keep_crown(crown, keep, "ragged border", never);
   std::vector<std::string> reason(crown.vertices.size());
   for (const DroppedVertex& d : kept.dropped)
     reason[static_cast<std::size_t>(part.old_vertices[static_cast<std::size_t>(d.vertex)])] = d.reason;
@@ -99,6 +119,15 @@ void drop_skirt(const TriangleMesh& crown, KeptCrown& kept, const SurfaceNetwork
   keep_only(kept, triangles_without_spikes(kept.mesh), "spike");
 }
 
+/// The crown without its cap, of the size of a tooth before and after: what is left of a plinth is smaller.
+KeptCrown open_part(const TriangleMesh& crown, bool closed, const Tools& tools, const CompleteOptions& options,
+                    CompletionRecord& record) {
+  require_tooth_size(crown, options.millimetres_per_unit, closed);
+  KeptCrown kept = open_crown(crown, closed, tools.atlas, options, record);
+  if (closed) require_tooth_size(kept.mesh, options.millimetres_per_unit);
+  return kept;
+}
+
 void require_tooth_surface(const TriangleMesh& open_crown) {
   require_usable_crown(open_crown);
   require_outward_and_uncut(open_crown);
@@ -118,10 +147,10 @@ bool is_tooth_surface(const TriangleMesh& open_crown) {
 KeptCrown tooth_of_raw_crown(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
                              CompletionRecord& record) {
   require_readable_crown(crown);
-  const std::vector<bool> sound = sound_triangles(crown);
-  const Submesh part = submesh(crown, sound);
-  require_tooth_size(part.mesh, options.millimetres_per_unit);
-  KeptCrown kept = open_crown(part.mesh, diagnose(part.mesh).border_edges.empty(), tools.atlas, options, record);
+  const Submesh part = submesh(crown, sound_triangles(crown));
+  require_one_crown(part.mesh);
+  const bool closed = diagnose(part.mesh).border_edges.empty();
+  KeptCrown kept = open_part(part.mesh, closed, tools, options, record);
   drop_skirt(part.mesh, kept, *tools.skirt, *options.skirt, record);
   record.tooth_confidence = numbered_as_before(record.tooth_confidence, part.old_vertices, crown.vertices.size());
   if (part.old_triangles.size() < crown.triangles.size()) kept = all_between(crown, part, kept);
@@ -134,11 +163,15 @@ KeptCrown tooth_of_raw_crown(const TriangleMesh& crown, const Tools& tools, cons
 
 KeptCrown usable_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
                       CompletionRecord& record) {
-  if (options.skirt) return tooth_of_raw_crown(crown, tools, options, record);
-  const Diagnosis diagnosis = require_usable_crown(crown);
-  require_tooth_size(crown, options.millimetres_per_unit);
-  KeptCrown kept = open_crown(crown, diagnosis.border_edges.empty(), tools.atlas, options, record);
-  require_outward_and_uncut(kept.mesh);
+  KeptCrown kept;
+  if (options.skirt) {
+    kept = tooth_of_raw_crown(crown, tools, options, record);
+  } else {
+    const bool closed = require_usable_crown(crown).border_edges.empty();
+    kept = open_part(crown, closed, tools, options, record);
+    require_outward_and_uncut(kept.mesh);
+  }
+  if (record.cap_dropped) list_dropped_triangles(crown, kept, record);
   return kept;
 }
 
@@ -158,37 +191,50 @@ void number_as_input(KeptCrown& kept, const RepairedMesh& repaired, std::size_t 
     if (!reason[v].empty()) kept.dropped.push_back({static_cast<int>(v), reason[v]});
 }
 
-KeptCrown repaired_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
-                        CompletionRecord& record) {
-  RepairedMesh repaired = repair(crown);
+KeptCrown part_of_repaired(const TriangleMesh& crown, RepairedMesh repaired, const Tools& tools,
+                           const CompleteOptions& options, CompletionRecord& record) {
   KeptCrown kept = usable_part(repaired.mesh, tools, options, record);
   number_as_input(kept, repaired, crown.vertices.size());
   if (!record.tooth_confidence.empty())
     record.tooth_confidence = numbered_as_before(record.tooth_confidence, repaired.old_vertices, crown.vertices.size());
+  for (RepairStep& step : record.repairs) {  // those of the part, in the input's numbers
+    for (int& t : step.triangles) t = repaired.old_triangles[static_cast<std::size_t>(t)];
+    repaired.steps.push_back(std::move(step));
+  }
   record.repairs = std::move(repaired.steps);
   return kept;
 }
 
-/// Whether a repair finds anything to do.
-bool has_repairable_defects(const TriangleMesh& crown) {
-  try {
-    return !repair(crown).steps.empty();
-  } catch (const InputError&) {
-    return false;
-  }
+/// The usable part of the crown, repaired if asked for; without it specks alone are taken off.
+KeptCrown mended_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
+                      CompletionRecord& record) {
+  if (options.repair) return part_of_repaired(crown, repair(crown), tools, options, record);
+  RepairedMesh without_specks = drop_specks(crown);
+  if (without_specks.steps.empty()) return usable_part(crown, tools, options, record);
+  return part_of_repaired(crown, std::move(without_specks), tools, options, record);
 }
 
-/// Whether what the crown is refused for lies in a skirt that was not to be taken off.
-bool would_do_without_skirt(const TriangleMesh& crown, const Tools& tools, CompleteOptions options) {
-  if (options.skirt || tools.skirt == nullptr) return false;
-  options.skirt = SkirtBorderOptions().threshold;
-  CompletionRecord unused;
+/// Whether the crown would be taken with other options.
+bool would_be_taken(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options) {
   try {
-    usable_part(crown, tools, options, unused);
+    CompletionRecord not_kept;
+    mended_part(crown, tools, options, not_kept);
     return true;
   } catch (const Error&) {
     return false;
   }
+}
+
+/// A sentence on the option with which a crown that was refused would be taken; empty if there is none.
+std::string way_out(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options) {
+  CompleteOptions other = options;
+  other.skirt = SkirtBorderOptions().threshold;
+  if (!options.skirt && tools.skirt != nullptr && would_be_taken(crown, tools, other))
+    return " The option --skirt auto takes it off.";
+  other = options;
+  other.repair = true;
+  if (!options.repair && would_be_taken(crown, tools, other)) return " The option --repair may help.";
+  return {};
 }
 
 }  // namespace
@@ -201,12 +247,9 @@ KeptCrown take_crown(const TriangleMesh& input, const Atlas& atlas, const std::o
   const TriangleMesh crown = scaled(input, options.millimetres_per_unit);
   KeptCrown kept;
   try {
-    kept = options.repair ? repaired_part(crown, tools, options, record) : usable_part(crown, tools, options, record);
+    kept = mended_part(crown, tools, options, record);
   } catch (const InputError& error) {
-    if (would_do_without_skirt(crown, tools, options))
-      throw InputError(std::string(error.what()) + " The option --skirt auto takes it off.", error.elements());
-    if (options.repair || !has_repairable_defects(crown)) throw;
-    throw InputError(std::string(error.what()) + " The option --repair may help.", error.elements());
+    throw InputError(error.what() + way_out(crown, tools, options), error.elements());
   }
   record.crown_triangles = static_cast<int>(input.triangles.size());
   record.kept_triangles = static_cast<int>(kept.mesh.triangles.size());

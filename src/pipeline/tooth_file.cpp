@@ -91,7 +91,8 @@ void refer_to_file(CompletionRecord& record, const MeshFile& crown, const std::f
   for (int& v : record.kept_vertices) renumber(v);
   for (DroppedCrownVertex& dropped : record.dropped_vertices) renumber(dropped.vertex);
   for (RepairStep& step : record.repairs)
-    for (int& v : step.vertices) renumber(v);
+    for (std::vector<int>* ids : {&step.vertices, &step.merged_into})
+      for (int& v : *ids) renumber(v);
   for (int& v : record.promises.crown.dropped_vertices) renumber(v);
 }
 

@@ -79,31 +79,6 @@ void keep_one_region(const TriangleMesh& mesh, std::vector<bool>& side, bool val
     if (side[t] == value && region[t] != largest) side[t] = !value;
 }
 
-/// Area of the convex outline of the vertices seen along the axis.
-double outline_area(const TriangleMesh& mesh, const Eigen::Vector3d& axis) {
-  const Eigen::Vector3d u = axis.unitOrthogonal();
-  const Eigen::Vector3d v = axis.cross(u);
-  std::vector<std::pair<double, double>> points;
-  for (const Point& p : mesh.vertices) points.emplace_back(p.dot(u), p.dot(v));
-  std::sort(points.begin(), points.end());
-  const auto turns_left = [](const auto& a, const auto& b, const auto& c) {
-    return (b.first - a.first) * (c.second - a.second) - (b.second - a.second) * (c.first - a.first) > 0;
-  };
-  // Monotone chain (Andrew 1979): lower outline forwards, upper outline backwards.
-  std::vector<std::pair<double, double>> hull;
-  const auto extend = [&](const auto& p, std::size_t keep) {
-    while (hull.size() > keep && !turns_left(hull[hull.size() - 2], hull.back(), p)) hull.pop_back();
-    hull.push_back(p);
-  };
-  for (const auto& p : points) extend(p, 1);
-  const std::size_t lower = hull.size();
-  for (auto it = points.rbegin() + 1; it != points.rend(); ++it) extend(*it, lower);
-  double twice = 0;
-  for (std::size_t i = 0; i + 1 < hull.size(); ++i)
-    twice += hull[i].first * hull[i + 1].second - hull[i].second * hull[i + 1].first;
-  return 0.5 * twice;
-}
-
 /// Mean angle, over the rim, between the surface's directions on both sides of it, each averaged over about a
 /// millimetre.
 double rim_bend(const TriangleMesh& mesh, const std::vector<bool>& is_cap) {
@@ -158,13 +133,57 @@ double inner_curvature(const TriangleMesh& mesh, const Cap& cap) {
   return area > 0 ? bend / area : 0;
 }
 
+/// How far the cap's centroid lies behind the middle of its rim, along the axis.
+double depth_behind_rim(const TriangleMesh& mesh, const std::vector<bool>& is_cap, const Eigen::Vector3d& axis) {
+  const TriangleAdjacency adjacency = triangle_adjacency(mesh);
+  double area = 0, length = 0, inner = 0, rim = 0;
+  for (std::size_t t = 0; t < is_cap.size(); ++t) {
+    if (!is_cap[t]) continue;
+    double height = 0;
+    for (std::size_t e = 0; e < 3; ++e) {
+      const Point& a = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][e])];
+      const Point& b = mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][(e + 1) % 3])];
+      height += a.dot(axis) / 3;
+      const int other = adjacency.neighbours[t][e];
+      if (other < 0 || is_cap[static_cast<std::size_t>(other)]) continue;
+      length += (b - a).norm();
+      rim += (b - a).norm() * 0.5 * (a + b).dot(axis);
+    }
+    area += triangle_area(mesh, t);
+    inner += triangle_area(mesh, t) * height;
+  }
+  return area > 0 && length > 0 ? inner / area - rim / length : 0;
+}
+
 }  // namespace
 
-Cap find_cap(const TriangleMesh& closed_crown, const Eigen::Vector3d& growth_axis, const CapOptions& options) {
+double outline_area(const TriangleMesh& mesh, const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d u = axis.unitOrthogonal();
+  const Eigen::Vector3d v = axis.cross(u);
+  std::vector<std::pair<double, double>> points;
+  for (const Point& p : mesh.vertices) points.emplace_back(p.dot(u), p.dot(v));
+  std::sort(points.begin(), points.end());
+  const auto turns_left = [](const auto& a, const auto& b, const auto& c) {
+    return (b.first - a.first) * (c.second - a.second) - (b.second - a.second) * (c.first - a.first) > 0;
+  };
+  // Monotone chain (Andrew 1979): lower outline forwards, upper outline backwards.
+  std::vector<std::pair<double, double>> hull;
+  const auto extend = [&](const auto& p, std::size_t keep) {
+    while (hull.size() > keep && !turns_left(hull[hull.size() - 2], hull.back(), p)) hull.pop_back();
+    hull.push_back(p);
+  };
+  for (const auto& p : points) extend(p, 1);
+  const std::size_t lower = hull.size();
+  for (auto it = points.rbegin() + 1; it != points.rend(); ++it) extend(*it, lower);
+  double twice = 0;
+  for (std::size_t i = 0; i + 1 < hull.size(); ++i)
+    twice += hull[i].first * hull[i + 1].second - hull[i].second * hull[i + 1].first;
+  return 0.5 * twice;
+}
+
+Cap describe_cap(const TriangleMesh& closed_crown, std::vector<bool> is_cap, const Eigen::Vector3d& growth_axis) {
   Cap cap;
-  cap.is_cap = cut_off_cap(closed_crown, growth_axis, options);
-  keep_one_region(closed_crown, cap.is_cap, true);
-  keep_one_region(closed_crown, cap.is_cap, false);
+  cap.is_cap = std::move(is_cap);
   Eigen::Vector3d vector = Eigen::Vector3d::Zero();
   double area = 0;
   for (std::size_t t = 0; t < cap.is_cap.size(); ++t) {
@@ -179,18 +198,27 @@ Cap find_cap(const TriangleMesh& closed_crown, const Eigen::Vector3d& growth_axi
   cap.flatness = vector.norm() / area;
   cap.share = -vector.dot(growth_axis) / outline_area(closed_crown, growth_axis);
   cap.rim = rim_bend(closed_crown, cap.is_cap);
+  cap.depth = depth_behind_rim(closed_crown, cap.is_cap, growth_axis);
   cap.curvature = inner_curvature(closed_crown, cap);
   return cap;
+}
+
+Cap find_cap(const TriangleMesh& closed_crown, const Eigen::Vector3d& growth_axis, const CapOptions& options) {
+  std::vector<bool> is_cap = cut_off_cap(closed_crown, growth_axis, options);
+  keep_one_region(closed_crown, is_cap, true);
+  keep_one_region(closed_crown, is_cap, false);
+  return describe_cap(closed_crown, std::move(is_cap), growth_axis);
 }
 
 void require_cap(const Cap& cap, const CapOptions& options) {
   if (cap.flatness >= options.least_flatness && cap.share >= options.least_share && cap.rim >= options.least_rim)
     return;
-  throw InputError(
-      fmt::format("{} (The region most like one: flatness {:.2f} of {:.2f}, cross-section {:.2f} of {:.2f}, "
-                  "bend at its rim {:.0f} of {:.0f} degrees.)",
-                  no_cap_sentence, cap.flatness, options.least_flatness, cap.share, options.least_share, cap.rim,
-                  options.least_rim));
+  constexpr double hollow = 0.7;  // mm
+  const char* reason = cap.depth > hollow ? "what faces the root is hollow, as the inside of a restoration"
+                       : cap.share < options.least_share ? "what faces the root is narrower than a base"
+                       : cap.rim < options.least_rim     ? "what faces the root runs into the crown without an edge"
+                                                         : "what faces the root is not flat enough for a cap";
+  throw InputError(fmt::format("{} ({}.)", no_cap_sentence, reason));
 }
 
 }  // namespace rhizodont

@@ -20,10 +20,12 @@ struct CapOptions {
 /// The cap that closes the base of an exported crown.
 struct Cap {
   std::vector<bool> is_cap;  ///< per triangle
+  bool made = false;         ///< known to the triangle by the way in which a program made it: see `find_made_cap`
   int triangles = 0;         ///< number of true entries
   double flatness = 0;       ///< |sum of area vectors| / area of the cap
   double share = 0;          ///< cap's cross-section over that of the whole along the axis
   double rim = 0;            ///< degrees: mean bend of the surface across the rim, from 1 mm on one side to the other
+  double depth = 0;          ///< mm, along the axis: how far its middle lies inside of its rim
   double curvature = 0;      ///< 1/mm: mean bend inside the cap; caps are smoother than chewing surfaces
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit, the cap's mean normal: out of the crown
 };
@@ -34,7 +36,13 @@ struct Cap {
 /// Throws InputError where no region faces the root.
 Cap find_cap(const TriangleMesh& closed_crown, const Eigen::Vector3d& growth_axis, const CapOptions& options = {});
 
-/// Throws InputError, with the figures that fall short, for regions that are no cap: of a ball, of a whole tooth.
+/// The figures of a region that is taken for a cap. Throws InputError where it is empty, all, or without a direction.
+Cap describe_cap(const TriangleMesh& closed_crown, std::vector<bool> is_cap, const Eigen::Vector3d& growth_axis);
+
+/// Area, mm^2, of the convex outline of the vertices seen along an axis (unit vector).
+double outline_area(const TriangleMesh& mesh, const Eigen::Vector3d& axis);
+
+/// Throws InputError, with what is missing, for regions that are no cap: of a ball, of a whole tooth.
 void require_cap(const Cap& cap, const CapOptions& options = {});
 
 }  // namespace rhizodont

@@ -19,11 +19,13 @@ namespace {
 enum class Use : std::uint8_t { unreferenced, masked, pinched, kept };
 
 /// The triangles all of whose vertices are kept: a dropped triangle between kept ones would break the crown.
-std::vector<bool> induced_triangles(const TriangleMesh& crown, const std::vector<Use>& use) {
+std::vector<bool> induced_triangles(const TriangleMesh& crown, const std::vector<Use>& use,
+                                    const std::vector<bool>& never) {
   std::vector<bool> mask;
   for (const Triangle& t : crown.triangles)
-    mask.push_back(
-        std::all_of(t.begin(), t.end(), [&](int v) { return use[static_cast<std::size_t>(v)] == Use::kept; }));
+    mask.push_back((never.empty() || !never[mask.size()]) && std::all_of(t.begin(), t.end(), [&](int v) {
+                     return use[static_cast<std::size_t>(v)] == Use::kept;
+                   }));
   return mask;
 }
 
@@ -69,14 +71,15 @@ bool give_up_pinches(const TriangleMesh& crown, const std::vector<bool>& mask, s
 
 }  // namespace
 
-KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, const std::string& reason) {
+KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, const std::string& reason,
+                     const std::vector<bool>& never) {
   std::vector<Use> use(crown.vertices.size(), Use::unreferenced);
   for (std::size_t t = 0; t < keep.size(); ++t)
     for (const int v : crown.triangles[t])
       use[static_cast<std::size_t>(v)] = std::max(use[static_cast<std::size_t>(v)], keep[t] ? Use::kept : Use::masked);
   std::vector<bool> mask;
   do {
-    mask = induced_triangles(crown, use);
+    mask = induced_triangles(crown, use, never);
     if (std::none_of(mask.begin(), mask.end(), [](bool k) { return k; }))
       throw InputError("Nothing is left of the crown once its skirt and its cap are taken off.");
   } while (give_up_small_components(crown, mask, use) || give_up_pinches(crown, mask, use));

@@ -26,7 +26,9 @@ struct KeptCrown {
 /// Reduces a crown to the vertices of the triangles with a true entry in `keep`, with every triangle between them; then
 /// as far as needed for its border to be made of separate simple loops: vertices that the border passes twice, and what
 /// hangs on the rest by them only, go. `reason` is noted for the vertices outside of `keep`.
+/// `never`: triangles that are not kept even where all their vertices are; one entry per triangle, or empty for none.
 /// Throws InputError if nothing is left.
-KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, const std::string& reason);
+KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, const std::string& reason,
+                     const std::vector<bool>& never = {});
 
 }  // namespace rhizodont

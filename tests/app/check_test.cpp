@@ -200,6 +200,38 @@ TEST(Check, ASteinerPointInACrownTriangleIsBroken) {
   EXPECT_TRUE(report.solid.holds);
 }
 
+TEST(Check, AVertexMergedAcrossASeamHasAnotherOneInItsPlace) {
+  Pair pair = good_pair();
+  const int v = pole(pair.crown);
+  const auto copy = static_cast<std::int32_t>(pair.crown.vertices.size());
+  const Point beside = pair.crown.vertices[static_cast<std::size_t>(v)] + Point(0, 0, 0x1p-10);
+  pair.crown.vertices.push_back(beside);
+  std::vector<int> moved;  // every other triangle around v is on the other side of a seam
+  for (std::size_t t = 0; t < pair.crown.triangles.size(); ++t) {
+    Triangle& triangle = pair.crown.triangles[t];
+    const auto at = std::find(triangle.begin(), triangle.end(), v);
+    if (at == triangle.end() || t % 2 == 0) continue;
+    *at = copy;
+    moved.push_back(static_cast<int>(t));
+  }
+  ASSERT_FALSE(moved.empty());
+  CheckOptions options = allowing_for({{"merged across a seam", {copy}, {}, {v}}});
+  CheckReport report = check(pair.crown, pair.tooth, options);
+  EXPECT_TRUE(report.holds()) << all_failures(report);
+  EXPECT_EQ(report.crown.kept_triangles, static_cast<std::int64_t>(pair.crown.triangles.size()));
+  EXPECT_EQ(report.crown.merged_vertices, 1);
+  EXPECT_DOUBLE_EQ(report.crown.merged_distance_max, 0x1p-10);
+  // The triangles are demanded all the same, with the other vertex.
+  std::swap(
+      pair.tooth
+          .triangles[static_cast<std::size_t>(pair.part.old_triangles[static_cast<std::size_t>(moved.front())])][0],
+      pair.tooth
+          .triangles[static_cast<std::size_t>(pair.part.old_triangles[static_cast<std::size_t>(moved.front())])][1]);
+  EXPECT_EQ(check(pair.crown, pair.tooth, options).crown.broken_triangles, std::vector<int>{moved.front()});
+  options.merged_vertices.front()[1] = copy + 1;
+  EXPECT_THROW(check(pair.crown, pair.tooth, options), UsageError);
+}
+
 TEST(Check, SomethingMustBeKept) {
   const Pair pair = good_pair();
   TriangleMesh elsewhere = pair.crown;

@@ -89,9 +89,9 @@ TEST_F(Complete, MeshesThatAreNoCrownAreRefused) {
   write("ball.ply", test::sphere(4, 4));
   expect_refused("ball.ply", "no cap");
   write("pieces.ply", test::together(crown, crown, Point(20, 0, 0)));
-  expect_refused("pieces.ply", "2 separate pieces");
+  expect_refused("pieces.ply", "2 crowns");
   write("inside_out.ply", flipped(crown));
-  expect_refused("inside_out.ply", "face inwards");
+  expect_refused("inside_out.ply", "inside out");
   TriangleMesh damaged = crown;
   std::swap(damaged.triangles[50][0], damaged.triangles[50][1]);
   write("flipped.ply", damaged);

@@ -11,7 +11,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <map>
 
 namespace rhizodont {
 namespace {
@@ -66,7 +68,8 @@ TEST(Repair, TrianglesThereTwiceOrWithoutAreaGo) {
   mesh.triangles.push_back({t[0], t[1], t[0]});
   const RepairedMesh repaired = repair(mesh);
   expect_dome(repaired);
-  EXPECT_EQ(step(repaired, "twice").triangles, (std::vector<int>{first_new, first_new + 1, first_new + 2}));
+  EXPECT_EQ(step(repaired, "twice").triangles, (std::vector<int>{first_new, first_new + 2}));
+  EXPECT_EQ(step(repaired, "inward copy").triangles, std::vector<int>{first_new + 1});
 }
 
 TEST(Repair, ATJunctionIsClosedWithoutMovingTheSurface) {
@@ -104,7 +107,7 @@ TEST(Repair, AChordBetweenVerticesOfTheCrownIsListedAsATriangle) {
   mesh.triangles.push_back({0, 20, 40});
   const RepairedMesh repaired = repair(mesh);
   expect_dome(repaired);
-  const RepairStep s = step(repaired, "separate piece");
+  const RepairStep s = step(repaired, "speck");
   EXPECT_TRUE(s.vertices.empty());
   EXPECT_EQ(s.triangles, std::vector<int>{static_cast<int>(mesh.triangles.size()) - 1});
 }
@@ -116,6 +119,67 @@ TEST(Repair, ThePieceWithTheLargestAreaStays) {
   expect_dome(repaired);
   EXPECT_EQ(step(repaired, "separate piece").vertices.size(), test::dome(4, 0.5).vertices.size());
   EXPECT_EQ(repaired.old_vertices.front(), static_cast<int>(test::dome(4, 0.5).vertices.size()));
+}
+
+/// What is said where the repair refuses.
+std::string refusal(const TriangleMesh& mesh) {
+  try {
+    repair(mesh);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(Repair, APieceOfLikeSizeIsNeverDropped) {
+  EXPECT_NE(refusal(test::together(crown(), crown(), Point(9, 0, 0))).find("2 crowns"), std::string::npos);
+  // Also where the two share an edge that they crowd.
+  TriangleMesh mesh = test::together(crown(), crown(), Point(9, 0, 0));
+  const auto offset = static_cast<std::int32_t>(crown().vertices.size());
+  const Triangle t = crown().triangles[7], u = crown().triangles[90];
+  for (Triangle& triangle : mesh.triangles)
+    for (std::int32_t& v : triangle) {
+      if (v == u[0] + offset) v = t[0];
+      if (v == u[1] + offset) v = t[1];
+    }
+  EXPECT_NE(refusal(mesh).find("2 crowns"), std::string::npos);
+}
+
+TEST(Repair, ADoubleSidedCrownKeepsItsOuterSide) {
+  const TriangleMesh once = crown();
+  TriangleMesh mesh = flipped(once);
+  mesh.triangles.insert(mesh.triangles.end(), once.triangles.begin(), once.triangles.end());
+  const RepairedMesh repaired = repair(mesh);
+  EXPECT_EQ(repaired.mesh.triangles, once.triangles);
+  ASSERT_EQ(repaired.steps.size(), 1U);
+  EXPECT_EQ(repaired.steps[0].triangles.size(), once.triangles.size());
+  EXPECT_EQ(repaired.steps[0].triangles.back(), static_cast<int>(once.triangles.size()) - 1) << "the inward ones";
+}
+
+TEST(Repair, ASeamIsMergedAndListed) {
+  const TriangleMesh once = crown();
+  TriangleMesh mesh = once;
+  const std::size_t first_new = mesh.vertices.size();
+  std::map<int, int> other_side;  // all triangles right of x = 0 get vertices of their own there
+  for (Triangle& t : mesh.triangles) {
+    double x = 0;
+    for (const int v : t) x += once.vertices[static_cast<std::size_t>(v)].x();
+    if (x < 0) continue;
+    for (std::int32_t& v : t) {
+      const Point p = once.vertices[static_cast<std::size_t>(v)];
+      if (std::abs(p.x()) > 1e-9) continue;
+      const auto [place, fresh] = other_side.try_emplace(v, static_cast<int>(mesh.vertices.size()));
+      if (fresh) mesh.vertices.push_back(p + Point(0, 0, 2e-3));
+      v = place->second;
+    }
+  }
+  const RepairedMesh repaired = repair(mesh);
+  EXPECT_EQ(repaired.mesh.triangles, once.triangles);
+  EXPECT_EQ(repaired.mesh.vertices, once.vertices);
+  const RepairStep s = step(repaired, "seam, at most 0.002 mm");
+  EXPECT_EQ(s.vertices.size(), mesh.vertices.size() - first_new);
+  ASSERT_EQ(s.merged_into.size(), s.vertices.size());
+  for (std::size_t k = 0; k < s.vertices.size(); ++k) EXPECT_EQ(other_side.at(s.merged_into[k]), s.vertices[k]);
 }
 
 TEST(Repair, TrianglesAreTurnedAsMostOfTheirPieceAndOutward) {
@@ -155,6 +219,7 @@ TEST(Repair, CutsAreTakenOutUnlessTheyAreEverywhere) {
   const std::int32_t shift = static_cast<std::int32_t>(crown().vertices.size());
   const auto loop = border_loops(crown()).front();
   twice.triangles.push_back({loop[1], loop[0], loop[0] + shift});
+  twice.triangles.push_back({loop[0] + shift, loop[1] + shift, loop[1]});
   EXPECT_NO_THROW(repair(twice));
 }
 

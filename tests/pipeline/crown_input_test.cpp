@@ -60,8 +60,12 @@ TEST(CrownInput, DamagedMeshesAreRefused) {
   mesh.vertices.emplace_back(0, 0, 9);
   mesh.triangles.push_back({mesh.triangles[3][0], mesh.triangles[3][1], static_cast<int>(mesh.vertices.size()) - 1});
   expect_complaint(mesh, "more than two triangles");
-  expect_complaint(test::together(bowl(), bowl(), Point(20, 0, 0)), "2 separate pieces");
-  expect_complaint(flipped(bowl()), "face inwards");
+  expect_complaint(test::together(bowl(), bowl(), Point(20, 0, 0)), "2 crowns");
+  expect_complaint(flipped(bowl()), "inside out");
+  expect_complaint(flipped(test::sphere(3, 4)), "inside out");
+  mesh = bowl();
+  for (const Triangle& t : bowl().triangles) mesh.triangles.push_back({t[0], t[2], t[1]});
+  expect_complaint(mesh, "double-sided");
 }
 
 TEST(CrownInput, TheUnitIsGuessedFromTheSize) {
@@ -72,6 +76,20 @@ TEST(CrownInput, TheUnitIsGuessedFromTheSize) {
   // Read as centimetres, a crown in millimetres is too large; the hint speaks of the raw size.
   const TriangleMesh wrong = scaled(bowl(), 10);
   EXPECT_THROW(require_tooth_size(wrong, 10), InputError);
+}
+
+TEST(CrownInput, AClosedMeshMayBeLongerForItMayHaveARoot) {
+  const TriangleMesh tooth = scaled(test::sphere(3, 4), 3);  // 24 mm
+  EXPECT_NO_THROW(require_tooth_size(tooth, 1, true));
+  EXPECT_THROW(require_tooth_size(tooth, 1), InputError);
+  EXPECT_THROW(require_tooth_size(scaled(tooth, 1e3), 1, true), InputError);
+  try {
+    require_no_root(tooth);
+    FAIL() << "nothing was said";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("its root already"), std::string::npos);
+  }
+  EXPECT_NO_THROW(require_no_root(test::sphere(3, 4)));
 }
 
 TEST(CrownInput, ACrownThatCutsItselfIsRefusedWithTheTriangles) {
