@@ -133,7 +133,7 @@ void unwrap(std::string_view bytes, Unwrapped& result) {
     throw InputError("the file is text in UTF-32: save it as UTF-8");
   if (const auto order = utf16_order(result.bytes)) {
     take(utf8_of(result.bytes, *order));
-    result.notes.emplace_back("The file is text in UTF-16; other programs read UTF-8 only.");
+    result.notes.emplace_back("The file is text in UTF-16 and was read as that; for other programs, save it as UTF-8.");
   }
   if (result.bytes.starts_with("\xef\xbb\xbf")) result.bytes.remove_prefix(3);
 }

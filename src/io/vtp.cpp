@@ -133,7 +133,8 @@ class PieceReader {
     for (const pugi::xml_node& node : data.children("DataArray")) {
       const std::string name = node.attribute("Name").as_string();
       const int components = node.attribute("NumberOfComponents").as_int(1);
-      if (name.empty() || (components != 1 && !is_colour(node))) continue;
+      const bool is_text = std::string_view(node.attribute("type").as_string()) == "String";
+      if (name.empty() || is_text || (components != 1 && !is_colour(node))) continue;
       try {
         take_attribute(name, read_vtk_array(node, storage_));
       } catch (const InputError& error) {
