@@ -48,8 +48,39 @@ struct DroppedCrownVertex {
 
 /// Where the truth lies with 80 % probability, as found on generated teeth that the network was not trained on.
 struct RootInterval {
-  double length_low_mm = 0, length_high_mm = 0;  ///< of the root's length
+  double length_low_mm = 0, length_high_mm = 0;  ///< of the root's length, [shortest_root_mm, longest_root_mm]
   double apex_radius_mm = 0;                     ///< of a ball around the apex
+};
+
+/// What a crown looks like, judged against generated crowns.
+enum class LikenessVerdict {
+  fits,         ///< like the tooth it is said to be
+  other_tooth,  ///< like a tooth, but more like another one
+  unlike,       ///< hardly like any tooth: little of a crown, a ground one, or none
+};
+
+/// One of the 32 teeth that a crown may be.
+struct ToothLikeness {
+  int fdi = 0;
+  double probability = 0;  ///< 0..1, among the 32 teeth, each of which is as likely as the other beforehand
+  double distance_mm = 0;  ///< mean distance, both ways, between the crown and the mean crown laid on it
+};
+
+/// How a crown agrees with the tooth it is said to be.
+struct CrownLikeness {
+  LikenessVerdict verdict = LikenessVerdict::fits;
+  ToothLikeness said;                 ///< the tooth that it was said to be or taken for
+  std::array<ToothLikeness, 2> next;  ///< the two most probable of the others
+  double seen = 0;                    ///< share of that tooth's mean crown that the crown covers, 0..1
+  double explained = 0;               ///< share of the crown's surface that lies near that mean crown, 0..1
+  double strangeness = 0;             ///< 1: as far from generated crowns as the bound from which it is called unlike
+};
+
+/// Where a root comes from.
+enum class RootSource {
+  network,            ///< predicted for the crown as it was laid at first
+  network_laid_anew,  ///< predicted for the crown laid otherwise, for the first root came out as shreds
+  mean_tooth,         ///< the mean tooth of the type, laid on the crown, for all predictions came out as shreds
 };
 
 struct StageRecord {
@@ -62,8 +93,11 @@ struct StageRecord {
 struct CompletionRecord {
   int fdi = 0;
   bool fdi_guessed = false;
-  double type_residual_mm = 0;           ///< mean distance between the crown and its type's mean crown
-  Eigen::Vector3d growth_axis{0, 0, 1};  ///< unit, root to crown, in the input's frame
+  double millimetres_per_unit = 1;        ///< of the input's coordinates, which are the tooth's
+  double type_residual_mm = 0;            ///< mean distance between the crown and its type's mean crown
+  std::optional<CrownLikeness> likeness;  ///< not there if the models' folder has nothing to judge by
+  RootSource root_source = RootSource::network;
+  Eigen::Vector3d growth_axis{0, 0, 1};                          ///< unit, root to crown, in the input's frame
   Eigen::Matrix3d frame_rotation = Eigen::Matrix3d::Identity();  ///< input directions to canonical directions
   Point frame_centre = Point::Zero();                            ///< mm
   bool frame_mirrored = false;
@@ -117,8 +151,8 @@ struct CompletedTooth {
 /// Weights and mean crowns, loaded once and used for many teeth, from several threads if wished.
 class CompletionModels {
  public:
-  /// Reads completion.safetensors and atlas.safetensors from a folder, and skirt.safetensors if it is there. Throws
-  /// InputError if one is missing or damaged.
+  /// Reads completion.safetensors and atlas.safetensors from a folder, and skirt.safetensors and
+  /// likeness.safetensors if they are there. Throws InputError if one is missing or damaged.
   static CompletionModels load(const std::filesystem::path& folder);
   CompletionModels(CompletionModels&&) noexcept;
   CompletionModels& operator=(CompletionModels&&) noexcept;
@@ -134,6 +168,9 @@ class CompletionModels {
 
 /// The folder with the shipped models: $RHIZODONT_MODELS, else where they were installed, else the source tree's.
 std::filesystem::path default_models_folder();
+
+/// A unit in words ("millimetres"), or its millimetres ("3 mm") where it has no name here.
+std::string unit_in_words(double millimetres_per_unit);
 
 /// Called with the name of each stage before it begins.
 using ProgressCallback = std::function<void(std::string_view stage)>;

@@ -6,9 +6,15 @@
 
 namespace rhizodont {
 
+/// mm: no root that is steered, and no bound of an interval, is shorter or longer, from the crown's lowest point to the
+/// apex. Mean roots are 11 to 17 mm long (Wheeler); resorbed roots, and crowns cut low on the root, leave less.
+inline constexpr double shortest_root_mm = 3;
+inline constexpr double longest_root_mm = 30;
+
 /// What the user knows or wants of a root; the crown stays as it is.
 struct RootSteering {
-  /// mm, [3, 30]: length along the growth axis from the crown's lowest point to the apex, as measured on an X-ray.
+  /// mm, [shortest_root_mm, longest_root_mm]: length along the growth axis from the crown's lowest point to the apex,
+  /// as measured on an X-ray.
   std::optional<double> length_mm;
   double tip_degrees = 0;     ///< [-30, 30]: turns the root about its start; positive: apex towards distal
   double torque_degrees = 0;  ///< [-30, 30]: positive: apex towards tongue or palate

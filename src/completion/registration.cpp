@@ -7,6 +7,8 @@
 // similarity from pairs: S. Umeyama, "Least-squares estimation of transformation parameters between two point
 // patterns", 1991.
 #include "completion/frame.hpp"
+#include "completion/likely_teeth.hpp"
+#include "completion/oriented_clouds.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
@@ -27,29 +29,10 @@ namespace {
 
 using Matrix3X = Eigen::Matrix3Xd;
 
-// Oriented points in millimetres.
-struct Cloud {
-  Matrix3X points, normals;
-
-  Eigen::Index size() const { return points.cols(); }
-};
-
-Cloud cloud_of(const OrientedPoints& source, double scale) {
-  Cloud cloud;
-  const auto count = static_cast<Eigen::Index>(source.points.size());
-  cloud.points.resize(3, count);
-  cloud.normals.resize(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    cloud.points.col(i) = scale * source.points[static_cast<std::size_t>(i)];
-    cloud.normals.col(i) = source.normals[static_cast<std::size_t>(i)];
-  }
-  return cloud;
-}
-
 // Every k-th point: the clouds are in random or farthest-point order, of which any part is even.
-Cloud thinned(const Cloud& cloud, Eigen::Index count) {
+OrientedCloud thinned(const OrientedCloud& cloud, Eigen::Index count) {
   if (cloud.size() <= count) return cloud;
-  Cloud result;
+  OrientedCloud result;
   result.points.resize(3, count);
   result.normals.resize(3, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -66,55 +49,10 @@ struct Similarity {
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // to = scale * rotation * from + shift
 };
 
-Cloud moved(const Cloud& cloud, const Similarity& by) {
-  Cloud result;
+OrientedCloud moved(const OrientedCloud& cloud, const Similarity& by) {
+  OrientedCloud result;
   result.points = (by.scale * by.rotation * cloud.points).colwise() + by.shift;
   result.normals = by.rotation * cloud.normals;
-  return result;
-}
-
-// Squared distance of each point of `from` to the nearest of `to`, normals included, and which that is.
-struct Nearest {
-  std::vector<double> squared;
-  std::vector<Eigen::Index> index;
-};
-
-// Six numbers per point, one list for each: coordinates, then weighted normals.
-struct Features {
-  std::array<std::vector<float>, 6> rows;
-
-  std::size_t size() const { return rows[0].size(); }
-};
-
-Features features_of(const Cloud& cloud, double normal_weight) {
-  Features features;
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (Eigen::Index i = 0; i < cloud.size(); ++i) {
-      features.rows[k].push_back(static_cast<float>(cloud.points(static_cast<Eigen::Index>(k), i)));
-      features.rows[k + 3].push_back(
-          static_cast<float>(normal_weight * cloud.normals(static_cast<Eigen::Index>(k), i)));
-    }
-  }
-  return features;
-}
-
-Nearest nearest(const Features& from, const Features& to) {
-  Nearest result;
-  const std::size_t count = to.size();
-  std::vector<float> squared(count);
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    std::array<const float*, 6> row{};
-    std::array<float, 6> at{};
-    for (std::size_t k = 0; k < 6; ++k) row[k] = to.rows[k].data(), at[k] = from.rows[k][i];
-    for (std::size_t j = 0; j < count; ++j) {
-      float sum = 0;
-      for (std::size_t k = 0; k < 6; ++k) sum += (row[k][j] - at[k]) * (row[k][j] - at[k]);
-      squared[j] = sum;
-    }
-    const auto best = std::min_element(squared.begin(), squared.end());
-    result.squared.push_back(static_cast<double>(*best));
-    result.index.push_back(best - squared.begin());
-  }
   return result;
 }
 
@@ -139,7 +77,7 @@ struct Trim {
   double crown, mean;
 };
 
-double two_way_distance(const Features& crown, const Features& mean, const Trim& trim) {
+double two_way_distance(const CloudFeatures& crown, const CloudFeatures& mean, const Trim& trim) {
   return 0.5 * (trimmed_mean_distance(nearest(crown, mean).squared, trim.crown) +
                 trimmed_mean_distance(nearest(mean, crown).squared, trim.mean));
 }
@@ -163,13 +101,13 @@ Similarity similarity_of_pairs(const Matrix3X& from, const Matrix3X& to, const S
   return result;
 }
 
-Similarity refined(const Cloud& crown, const Cloud& mean, Similarity at, const RegistrationOptions& options,
-                   const Trim& trim, int iterations) {
-  const Features goal = features_of(mean, options.normal_weight_mm);
+Similarity refined(const OrientedCloud& crown, const OrientedCloud& mean, Similarity at,
+                   const RegistrationOptions& options, const Trim& trim, int iterations) {
+  const CloudFeatures goal = features_of(mean, options.normal_weight_mm);
   for (int i = 0; i < iterations; ++i) {
-    const Cloud here = moved(crown, at);
-    const Features features = features_of(here, options.normal_weight_mm);
-    const Nearest forth = nearest(features, goal), back = nearest(goal, features);
+    const OrientedCloud here = moved(crown, at);
+    const CloudFeatures features = features_of(here, options.normal_weight_mm);
+    const NearestOfCloud forth = nearest(features, goal), back = nearest(goal, features);
     const double forth_limit = trimmed_limit(forth.squared, trim.crown);
     const double back_limit = trimmed_limit(back.squared, trim.mean);
     std::vector<std::pair<Eigen::Index, Eigen::Index>> pairs;  // crown point, mean point
@@ -193,7 +131,7 @@ Similarity refined(const Cloud& crown, const Cloud& mean, Similarity at, const R
 }
 
 // Start with a rotation: tops together along z, centres together across.
-Similarity start_with(const Eigen::Matrix3d& rotation, const Cloud& crown, const Cloud& mean) {
+Similarity start_with(const Eigen::Matrix3d& rotation, const OrientedCloud& crown, const OrientedCloud& mean) {
   Similarity start;
   start.rotation = rotation;
   const Matrix3X turned = rotation * crown.points;
@@ -207,15 +145,16 @@ struct Registered {
   double residual = std::numeric_limits<double>::max();
 };
 
-Registered register_cloud(const Cloud& crown, const Cloud& mean, const std::vector<Eigen::Matrix3d>& rotations,
-                          const RegistrationOptions& options, const Trim& trim) {
-  const Cloud coarse_crown = thinned(crown, 128), coarse_mean = thinned(mean, 128);
-  const Cloud fine_crown = thinned(crown, 256), fine_mean = thinned(mean, 256);
-  const Features coarse_goal = features_of(coarse_mean, options.normal_weight_mm);
+Registered register_cloud(const OrientedCloud& crown, const OrientedCloud& mean,
+                          const std::vector<Eigen::Matrix3d>& rotations, const RegistrationOptions& options,
+                          const Trim& trim) {
+  const OrientedCloud coarse_crown = thinned(crown, 128), coarse_mean = thinned(mean, 128);
+  const OrientedCloud fine_crown = thinned(crown, 256), fine_mean = thinned(mean, 256);
+  const CloudFeatures coarse_goal = features_of(coarse_mean, options.normal_weight_mm);
   std::vector<std::pair<double, std::size_t>> starts;
   for (std::size_t r = 0; r < rotations.size(); ++r) {
     const Similarity start = start_with(rotations[r], coarse_crown, coarse_mean);
-    const Features features = features_of(moved(coarse_crown, start), options.normal_weight_mm);
+    const CloudFeatures features = features_of(moved(coarse_crown, start), options.normal_weight_mm);
     starts.emplace_back(two_way_distance(features, coarse_goal, trim), r);
   }
   std::sort(starts.begin(), starts.end());
@@ -230,11 +169,11 @@ Registered register_cloud(const Cloud& crown, const Cloud& mean, const std::vect
     if (static_cast<int>(chosen.size()) == options.refined_starts) break;
   }
   Registered best;
-  const Features goal = features_of(mean, options.normal_weight_mm);
+  const CloudFeatures goal = features_of(mean, options.normal_weight_mm);
   for (const Eigen::Matrix3d& rotation : chosen) {
     Similarity at = start_with(rotation, fine_crown, fine_mean);
     at = refined(fine_crown, fine_mean, at, options, trim, options.iterations);
-    const Features features = features_of(moved(crown, at), options.normal_weight_mm);
+    const CloudFeatures features = features_of(moved(crown, at), options.normal_weight_mm);
     const double residual = two_way_distance(features, goal, trim);
     if (residual < best.residual) best = {at, residual};
   }
@@ -278,7 +217,7 @@ OrientedPoints surface_points(const TriangleMesh& mesh) {
 }
 
 // World points to a pose with `axis` up and `centre` in the origin, mirrored for the right side.
-Cloud upright_cloud(const OrientedPoints& points, const CanonicalFrame& upright) {
+OrientedCloud upright_cloud(const OrientedPoints& points, const CanonicalFrame& upright) {
   OrientedPoints turned;
   for (const Point& p : points.points) turned.points.push_back(upright.to_canonical(p));
   for (const Eigen::Vector3d& n : points.normals) turned.normals.push_back(upright.direction_to_canonical(n));
@@ -301,24 +240,50 @@ CanonicalFrame turned_frame(const CanonicalFrame& upright, const Eigen::Matrix3d
   return frame;
 }
 
-CrownFrame frame_from(const OrientedPoints& points, const Eigen::Vector3d& axis, const Point& centre, bool right_side,
-                      const MeanCrown& mean, const RegistrationOptions& options) {
-  const CanonicalFrame upright = upright_frame(axis, centre, right_side);
-  const Cloud crown = upright_cloud(points, upright), goal = cloud_of(mean.crown, upright.scale);
-  const Registered found =
-      register_cloud(crown, goal, rotations_about_z(options.start_angles), options, {options.trim, options.trim});
+// A crown brought upright and what laying a mean crown on it found from there.
+struct Laid {
+  CanonicalFrame upright;
+  Registered found;
+};
+
+Laid lay(const OrientedPoints& points, const CanonicalFrame& upright, const MeanCrown& mean,
+         const RegistrationOptions& options) {
+  const OrientedCloud crown = upright_cloud(points, upright), goal = cloud_of(mean.crown, upright.scale);
+  return {upright,
+          register_cloud(crown, goal, rotations_about_z(options.start_angles), options, {options.trim, options.trim})};
+}
+
+CrownFrame crown_frame(const Laid& laid) {
   // The axis is the crown's own: of the registration only the turn about it is kept.
-  const Eigen::Matrix3d& r = found.at.rotation;
+  const Eigen::Matrix3d& r = laid.found.at.rotation;
   CrownFrame result;
   const Eigen::Matrix3d turn = about_z(std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1)));
-  result.frame = turned_frame(upright, turn);
+  result.frame = turned_frame(laid.upright, turn);
   constexpr double longest = 0.5;
   const Eigen::Vector3d up = (turn * r.transpose()).col(2);
   const double length = up.head<2>().norm();
   // What was laid upside down tells nothing.
   if (up.z() > 0) result.form_axis = longest / std::max(length, longest) * up.head<2>();
-  result.residual_mm = found.residual / found.at.scale;
+  result.residual_mm = laid.found.residual / laid.found.at.scale;
   return result;
+}
+
+RigidFit rigid_fit(const Laid& laid) {
+  const Registered& found = laid.found;
+  RigidFit fit;
+  fit.frame = turned_frame(laid.upright, found.at.rotation);
+  fit.residual_mm = found.residual / found.at.scale;
+  fit.scale_ratio = 1 / found.at.scale;
+  // The mean crown's own origin, carried back to the scan.
+  const Eigen::Vector3d origin =
+      found.at.rotation.transpose() * (-found.at.shift) / found.at.scale / laid.upright.scale;
+  fit.frame.centre = laid.upright.to_world(origin);
+  return fit;
+}
+
+CrownFrame frame_from(const OrientedPoints& points, const Eigen::Vector3d& axis, const Point& centre, bool right_side,
+                      const MeanCrown& mean, const RegistrationOptions& options) {
+  return crown_frame(lay(points, upright_frame(axis, centre, right_side), mean, options));
 }
 
 void check_mean(const MeanCrown& mean) {
@@ -385,21 +350,69 @@ RigidFit fit_mean_crown(const OrientedPoints& points, const MeanCrown& mean, boo
   for (const Point& p : points.points) centre += p / static_cast<double>(points.points.size());
   const CanonicalFrame upright =
       upright_frame(any_orientation ? Eigen::Vector3d::UnitZ().eval() : axis_hint, centre, right_side);
-  const Cloud crown = upright_cloud(points, upright), goal = cloud_of(mean.crown, upright.scale);
+  const OrientedCloud crown = upright_cloud(points, upright), goal = cloud_of(mean.crown, upright.scale);
   const std::vector<Eigen::Matrix3d> rotations =
       any_orientation ? all_rotations(40, 12) : rotations_about_z(options.start_angles);
   RegistrationOptions wide = options;
   if (any_orientation) wide.refined_starts = std::max(12, options.refined_starts);
   // The cap over a base takes up to a third of a crown's surface.
   const Registered found = register_cloud(crown, goal, rotations, wide, {0.65 * options.trim, options.trim});
-  RigidFit fit;
-  fit.frame = turned_frame(upright, found.at.rotation);
-  fit.residual_mm = found.residual / found.at.scale;
-  fit.scale_ratio = 1 / found.at.scale;
-  // The mean crown's own origin, carried back to the scan.
-  const Eigen::Vector3d origin = found.at.rotation.transpose() * (-found.at.shift) / found.at.scale / upright.scale;
-  fit.frame.centre = upright.to_world(origin);
-  return fit;
+  return rigid_fit({upright, found});
+}
+
+std::vector<ToothFit> lay_likely_teeth(const TriangleMesh& open_crown, const Atlas& atlas, std::size_t count,
+                                       std::optional<std::size_t> also) {
+  constexpr Eigen::Index few = 96, crown_points = 160, mean_points = 256;
+  constexpr int start_angles = 24, first_iterations = 4, last_iterations = 6;
+  const RegistrationOptions options;
+  const Trim trim{options.trim, options.trim};
+  const OrientedPoints points = surface_points(open_crown);
+  const Eigen::Vector3d axis = growth_axis(open_crown);
+  const Point centre = area_centroid(open_crown);
+  for (const MeanCrown& mean : atlas.types) check_mean(mean);
+  const std::vector<Eigen::Matrix3d> rotations = rotations_about_z(start_angles);
+
+  std::vector<ToothFit> fits(2 * tooth_type_count);
+  std::vector<Laid> laid(fits.size());
+  tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t i) {
+    laid[i].upright = upright_frame(axis, centre, i % 2 == 1);
+    const OrientedCloud crown = thinned(upright_cloud(points, laid[i].upright), few);
+    const OrientedCloud mean = thinned(cloud_of(atlas.types[i / 2].crown, laid[i].upright.scale), few);
+    const CloudFeatures goal = features_of(mean, options.normal_weight_mm);
+    const auto distance = [&](const Similarity& at) {
+      return two_way_distance(features_of(moved(crown, at), options.normal_weight_mm), goal, trim);
+    };
+    std::vector<std::pair<double, Similarity>> starts;
+    for (const Eigen::Matrix3d& rotation : rotations) {
+      const Similarity at = start_with(rotation, crown, mean);
+      starts.emplace_back(distance(at), at);
+    }
+    std::stable_sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const std::size_t k : {std::size_t{0}, std::size_t{2}}) {  // the second has a turn of its own more often
+      const Similarity at = refined(crown, mean, starts[k].second, options, trim, first_iterations);
+      if (const double residual = distance(at); residual < laid[i].found.residual) laid[i].found = {at, residual};
+    }
+    fits[i] = {i, rigid_fit(laid[i])};
+  });
+  // Size speaks too: twice as far counts what is larger or smaller by a fifth.
+  const auto badness = [](const RigidFit& fit) {
+    return fit.residual_mm * (1 + std::pow(std::log(fit.scale_ratio) / 0.2, 2));
+  };
+  std::stable_sort(fits.begin(), fits.end(), [&](const ToothFit& a, const ToothFit& b) {
+    if (also && (a.tooth == *also) != (b.tooth == *also)) return a.tooth == *also;
+    return badness(a.fit) < badness(b.fit);
+  });
+  fits.resize(std::clamp<std::size_t>(count, 1, fits.size()));
+  tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t k) {
+    Laid& here = laid[fits[k].tooth];
+    const OrientedCloud crown = thinned(upright_cloud(points, here.upright), crown_points);
+    const OrientedCloud mean = thinned(cloud_of(atlas.types[fits[k].tooth / 2].crown, here.upright.scale), mean_points);
+    here.found.at = refined(crown, mean, here.found.at, options, trim, last_iterations);
+    here.found.residual = two_way_distance(features_of(moved(crown, here.found.at), options.normal_weight_mm),
+                                           features_of(mean, options.normal_weight_mm), trim);
+    fits[k].fit = rigid_fit(here);
+  });
+  return fits;
 }
 
 }  // namespace rhizodont

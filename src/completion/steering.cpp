@@ -112,8 +112,9 @@ void stretch(std::vector<Point>& points, const RootFrame& frame, double depth, d
 }  // namespace
 
 void require_steering_in_range(const RootSteering& steering) {
-  if (steering.length_mm && !(*steering.length_mm >= 3 && *steering.length_mm <= 30))
-    throw UsageError(fmt::format("A root length of {} mm is out of its range, 3 to 30 mm.", *steering.length_mm));
+  if (steering.length_mm && !(*steering.length_mm >= shortest_root_mm && *steering.length_mm <= longest_root_mm))
+    throw UsageError(fmt::format("A root length of {} mm is out of its range, {} to {} mm.", *steering.length_mm,
+                                 shortest_root_mm, longest_root_mm));
   require_angle(steering.tip_degrees, 30, "tip");
   require_angle(steering.torque_degrees, 30, "torque");
   require_angle(steering.bend_degrees, 45, "bend");

@@ -113,6 +113,14 @@ MeshFile read_of_other_size(std::string_view bytes) {
       fmt::format("the file is damaged or cut off: it announces {} triangles and has room for {}", announced, present));
 }
 
+// What a comment "unit: ..." says; millimetres where none does.
+std::string unit_in_comments(const std::vector<std::string>& comments) {
+  constexpr std::string_view mark = "unit: ";
+  for (const std::string& comment : comments)
+    if (comment.starts_with(mark)) return comment.substr(mark.size());
+  return "millimetres";
+}
+
 template <class T>
 void append(std::string& bytes, T value) {
   static_assert(std::endian::native == std::endian::little);
@@ -144,7 +152,7 @@ std::string write_stl(const MeshFile& file) {
   if (!coordinates_fit_float(mesh))
     throw UsageError(
         "STL files hold single precision only, and this mesh has coordinates that need double; use PLY or OBJ");
-  std::string bytes = "Rhizodont, millimetres";
+  std::string bytes = "Rhizodont, " + unit_in_comments(file.comments);
   bytes.resize(80, ' ');
   bytes.reserve(header_size + record_size * mesh.triangles.size());
   append(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));

@@ -12,10 +12,12 @@
 #include "mesh/closest_point.hpp"
 #include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
+#include "pipeline/crown_likeness.hpp"
 #include "pipeline/fitted_surface.hpp"
 #include "pipeline/guiding_cloud.hpp"
 #include "pipeline/missed_promise.hpp"
 #include "pipeline/models.hpp"
+#include "pipeline/prediction.hpp"
 #include "pipeline/report_parts.hpp"
 #include "pipeline/stage_clock.hpp"
 #include "pipeline/take_crown.hpp"
@@ -27,6 +29,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace rhizodont {
@@ -43,27 +46,48 @@ void require_options_in_range(const CompleteOptions& options) {
   require_steering_in_range(options.steering);
 }
 
-/// FDI number and canonical pose; a number that was not given is guessed, and so said.
-CrownFrame find_frame(const TriangleMesh& crown, const Atlas& atlas, const CompleteOptions& options,
-                      CompletionRecord& record) {
-  CrownFrame frame;
-  if (options.fdi) {
-    record.fdi = *options.fdi;
-    frame = canonical_frame(crown, record.fdi, atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(record.fdi))]);
+/// Which tooth the crown is, whether it looks like it, and its canonical pose; a number that was not given is guessed,
+/// and so said.
+CrownFrame find_frame(const TriangleMesh& crown, const CompletionModels::Content& models,
+                      const CompleteOptions& options, CompletionRecord& record) {
+  record.fdi_guessed = !options.fdi;
+  record.millimetres_per_unit = options.millimetres_per_unit;
+  if (models.likeness) {
+    record.likeness = judge_crown(crown, options.fdi, models.atlas, *models.likeness);
+    record.fdi = record.likeness->said.fdi;
+    if (auto warning = likeness_warning(*record.likeness, record.fdi_guessed))
+      record.warnings.push_back(std::move(*warning));
   } else {
-    const TypeGuess guess = guess_fdi_type(crown, atlas);
-    record.fdi = guess.fdi;
-    record.fdi_guessed = true;
-    record.warnings.push_back(
-        fmt::format("No FDI number was given; by its shape the crown was taken for tooth {}.", guess.fdi));
-    frame = guess.frame;
+    record.fdi = options.fdi ? *options.fdi : guess_fdi_type(crown, models.atlas).fdi;
+    if (record.fdi_guessed)
+      record.warnings.push_back(
+          fmt::format("No FDI number was given; by its shape the crown was taken for tooth {}.", record.fdi));
   }
-  record.type_residual_mm = frame.residual_mm;
-  record.growth_axis = frame.frame.direction_to_world(Eigen::Vector3d::UnitZ());
-  record.frame_rotation = frame.frame.rotation;
-  record.frame_centre = frame.frame.centre;
-  record.frame_mirrored = frame.frame.mirrored;
-  return frame;
+  return canonical_frame(crown, record.fdi,
+                         models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(record.fdi))]);
+}
+
+/// The predicted tooth, and what was done to get it.
+Prediction predict(const TriangleMesh& crown, const CrownFrame& frame, const CompletionModels::Content& models,
+                   CompletionRecord& record) {
+  Prediction prediction = predict_tooth(crown, record.fdi, frame, models);
+  const CanonicalFrame& pose = prediction.frame.frame;
+  record.type_residual_mm = prediction.frame.residual_mm;
+  record.growth_axis = pose.direction_to_world(Eigen::Vector3d::UnitZ());
+  record.frame_rotation = pose.rotation;
+  record.frame_centre = pose.centre;
+  record.frame_mirrored = pose.mirrored;
+  record.root_source = prediction.source;
+  if (prediction.source == RootSource::network_laid_anew)
+    record.warnings.push_back(
+        "The first prediction of the root fell to pieces; the crown was laid anew. Look at the root, and check the "
+        "tooth's number.");
+  if (prediction.source == RootSource::mean_tooth)
+    record.warnings.push_back(fmt::format(
+        "No root could be predicted from this crown; it has that of a mean {}, and nothing of its own. Check the "
+        "tooth's number and whether the crown is whole.",
+        record.fdi));
+  return prediction;
 }
 
 void note_guiding_distance(const TriangleMesh& crown, const TriangleMesh& surface, CompletionRecord& record) {
@@ -126,37 +150,92 @@ void note_uncertainty(const TriangleMesh& crown, const TriangleMesh& tooth, cons
   for (double& u : completed.uncertainty) u *= scales->surface;
   if (steering.any()) return;
   const double s = record.apex_expected_distance_mm;
-  record.root_interval = {record.root_length_mm + scales->length_low * s,
-                          record.root_length_mm + scales->length_high * s, scales->apex * s};
+  const auto possible = [](double length) { return std::clamp(length, shortest_root_mm, longest_root_mm); };
+  record.root_interval = {possible(record.root_length_mm + scales->length_low * s),
+                          possible(record.root_length_mm + scales->length_high * s), scales->apex * s};
 }
 
-/// The tooth in the input's unit: crown vertices are the input's own bits, new ones fit float where the input's do.
-TriangleMesh in_input_unit(const TriangleMesh& tooth, const TriangleMesh& input, const std::vector<int>& kept,
-                           double millimetres_per_unit) {
+/// Where the stages have their origin, in the input's coordinates.
+struct Workplace {
+  Point origin = Point::Zero();  // the input's own, unless the crown lies far from it
+  double millimetres_per_unit = 1;
+  bool as_float = true;  // new coordinates are rounded to float, as the input's are
+};
+
+/// The tooth in the input's coordinates: crown vertices are the input's own bits.
+TriangleMesh in_input_coordinates(const TriangleMesh& tooth, const TriangleMesh& input, const std::vector<int>& kept,
+                                  const Workplace& place) {
   TriangleMesh result = tooth;
-  const bool as_float = coordinates_fit_float(input);
   for (std::size_t v = 0; v < result.vertices.size(); ++v) {
     Point& p = result.vertices[v];
     if (v < kept.size()) {
       p = input.vertices[static_cast<std::size_t>(kept[v])];
       continue;
     }
-    p /= millimetres_per_unit;
-    if (as_float) p = nearest_float(p);
+    p = p / place.millimetres_per_unit + place.origin;
+    if (place.as_float) p = nearest_float(p);
   }
   return result;
 }
 
-/// As `check` does by the report: what a cap or a skirt was is not demanded, but repairs must leave the least share.
-CheckReport prove_promises(const TriangleMesh& input, const TriangleMesh& tooth, const CompletionRecord& record) {
+/// What the promises come to, kept or not. As `check` does by the report: what a cap or a skirt was is not demanded,
+/// but repairs must leave the least share.
+CheckReport evidence(const TriangleMesh& input, const TriangleMesh& tooth, const CompletionRecord& record) {
   CheckOptions options = allowing_for(record.repairs);
   options.dropped_vertices = vertices_not_of_tooth(record);
   options.compare_as_float = false;
-  const CheckReport report = check(input, tooth, options);
-  if (report.holds()) return report;
+  return check(input, tooth, options);
+}
+
+/// Brings the tooth back to where the input is, with evidence for the promises. Far from the origin floats lie so wide
+/// apart that new triangles may come to cross each other: then the new vertices keep all their digits.
+void put_in_place(const TriangleMesh& fused, const TriangleMesh& input, const std::vector<int>& kept, Workplace place,
+                  CompletedTooth& tooth) {
+  CompletionRecord& record = tooth.record;
+  tooth.mesh = in_input_coordinates(fused, input, kept, place);
+  record.promises = evidence(input, tooth.mesh, record);
+  if (!record.promises.holds() && place.as_float && !place.origin.isZero(0)) {
+    place.as_float = false;
+    tooth.mesh = in_input_coordinates(fused, input, kept, place);
+    record.promises = evidence(input, tooth.mesh, record);
+    record.warnings.push_back(
+        "The crown lies so far from the origin that single precision is too coarse for new triangles: new vertices "
+        "have double precision. Move the scan to the origin for STL.");
+  }
+  if (record.promises.holds()) return;
   std::string sentence = "No tooth was found that keeps the promises:";
-  for (const std::string& failure : report.failures) sentence += " " + failure;
+  for (const std::string& failure : record.promises.failures) sentence += " " + failure;
   throw NoResultError(sentence);
+}
+
+/// A crown far from the origin is moved there first, without rounding: the whole steps of the grid that go between are
+/// multiples of every coordinate's last digit. One nearby stays, so that its tooth has always the same bits.
+Workplace workplace(const TriangleMesh& input, double millimetres_per_unit) {
+  constexpr double far_mm = 500, step_mm = 64;
+  Workplace place{Point::Zero(), millimetres_per_unit, coordinates_fit_float(input)};
+  const std::size_t count = input.vertices.size();
+  if (count == 0) return place;
+  Point middle;  // the median: a stray vertex somewhere has no say
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    std::vector<double> along;
+    along.reserve(count);
+    for (const Point& p : input.vertices)
+      if (std::isfinite(p[k])) along.push_back(p[k]);
+    if (along.empty()) return place;
+    const auto half = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
+    std::nth_element(along.begin(), half, along.end());
+    middle[k] = *half;
+  }
+  if (!(middle.norm() * millimetres_per_unit > far_mm)) return place;
+  const double step = std::exp2(std::round(std::log2(step_mm / millimetres_per_unit)));
+  place.origin = (middle / step).array().round().matrix() * step;
+  return place;
+}
+
+TriangleMesh moved_by(TriangleMesh mesh, const Eigen::Vector3d& move) {
+  if (!move.isZero(0))
+    for (Point& p : mesh.vertices) p += move;
+  return mesh;
 }
 
 CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Content& models,
@@ -164,19 +243,21 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   CompletedTooth tooth;
   CompletionRecord& record = tooth.record;
   clock.begin("crown");
-  const KeptCrown crown = take_crown(input, models.atlas, models.skirt, options, record);
+  const Workplace place = workplace(input, options.millimetres_per_unit);
+  const KeptCrown crown = take_crown(moved_by(input, -place.origin), models.atlas, models.skirt, options, record);
 
   clock.begin("frame");
-  const CrownFrame frame = find_frame(crown.mesh, models.atlas, options, record);
+  const CrownFrame found = find_frame(crown.mesh, models, options, record);
   clock.begin("completion network");
   record.model = models.network.metadata();
-  PredictedTooth predicted = complete_points(crown.mesh, record.fdi, frame, models.network);
+  Prediction prediction = predict(crown.mesh, found, models, record);
+  PredictedTooth& predicted = prediction.tooth;
   clock.begin("orientation");
   const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, predicted.cloud);
   clock.begin("guiding surface");
   auto [surface, fit] = fitted_guiding_surface(cloud, crown.mesh, options.e);
   for (std::vector<Point>* points : {&surface.vertices, &predicted.cloud.points})
-    steer_root(*points, crown.mesh, frame.frame, record.fdi, options.steering);
+    steer_root(*points, crown.mesh, prediction.frame.frame, record.fdi, options.steering);
   note_guiding_distance(crown.mesh, surface, record);
   if (fit.undone)
     record.warnings.push_back(fmt::format(
@@ -193,11 +274,11 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   note_uncertainty(crown.mesh, fused.tooth.mesh, predicted, options.steering, tooth);
 
   clock.begin("check");
-  tooth.mesh = in_input_unit(fused.tooth.mesh, input, crown.old_vertices, options.millimetres_per_unit);
+  record.frame_centre += options.millimetres_per_unit * place.origin;
+  put_in_place(fused.tooth.mesh, input, crown.old_vertices, place, tooth);
   tooth.source.assign(tooth.mesh.vertices.size(), VertexSource::predicted);
   std::fill_n(tooth.source.begin(), crown.old_vertices.size(), VertexSource::scan);
   for (const int v : fused.transition.vertices) tooth.source[static_cast<std::size_t>(v)] = VertexSource::transition;
-  record.promises = prove_promises(input, tooth.mesh, record);
   for (std::string& missed : where_promise_three_is_missed(tooth.mesh, crown.old_vertices, crown.mesh.triangles.size(),
                                                            record.promises.new_triangles))
     record.warnings.push_back(std::move(missed));

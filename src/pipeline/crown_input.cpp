@@ -11,6 +11,7 @@
 #include "mesh/pieces.hpp"
 #include "mesh/seams.hpp"
 #include "mesh/self_intersection.hpp"
+#include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 
 #include <fmt/format.h>
@@ -95,9 +96,19 @@ struct Unit {
   const char* option;
   double millimetres;
 };
-constexpr std::array<Unit, 3> other_units{{{"centimetres", "cm", 10}, {"inches", "in", 25.4}, {"metres", "m", 1000}}};
+constexpr std::array<Unit, 5> units{{{"millimetres", "mm", 1},
+                                     {"micrometres", "um", 1e-3},
+                                     {"centimetres", "cm", 10},
+                                     {"inches", "in", 25.4},
+                                     {"metres", "m", 1000}}};
 
 }  // namespace
+
+std::string unit_in_words(double millimetres_per_unit) {
+  for (const Unit& unit : units)
+    if (unit.millimetres == millimetres_per_unit) return unit.name;
+  return fmt::format("{} mm", millimetres_per_unit);
+}
 
 Diagnosis require_readable_crown(const TriangleMesh& crown) {
   if (crown.triangles.empty()) throw InputError("The crown has no triangles.");
@@ -147,7 +158,7 @@ void require_tooth_size(const TriangleMesh& crown, double millimetres_per_unit, 
   if (size >= smallest_tooth && size <= (closed ? longest_whole_tooth : largest_tooth)) return;
   const double raw = size / millimetres_per_unit;
   std::string hint;
-  for (const Unit& unit : other_units)
+  for (const Unit& unit : units)
     if (raw * unit.millimetres >= smallest_tooth && raw * unit.millimetres <= largest_tooth)
       hint += fmt::format("{} {} (--unit {})", hint.empty() ? " Is it in" : " or", unit.name, unit.option);
   if (!hint.empty()) hint += "?";

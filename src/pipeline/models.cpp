@@ -15,11 +15,13 @@ CompletionModels& CompletionModels::operator=(CompletionModels&&) noexcept = def
 CompletionModels::~CompletionModels() = default;
 
 CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
-  auto content =
-      std::make_unique<Content>(Content{load_atlas(folder / "atlas.safetensors"),
-                                        CompletionNetwork::load(folder / "completion.safetensors"), std::nullopt});
+  auto content = std::make_unique<Content>(Content{load_atlas(folder / "atlas.safetensors"),
+                                                   CompletionNetwork::load(folder / "completion.safetensors"),
+                                                   std::nullopt, std::nullopt});
   if (const auto skirt = folder / "skirt.safetensors"; std::filesystem::exists(skirt))
     content->skirt = SurfaceNetwork::load(skirt);
+  if (const auto likeness = folder / "likeness.safetensors"; std::filesystem::exists(likeness))
+    content->likeness = load_likeness(likeness);
   return CompletionModels(std::move(content));
 }
 

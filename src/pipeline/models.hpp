@@ -3,6 +3,7 @@
 #pragma once
 
 #include "completion/frame.hpp"
+#include "completion/likeness.hpp"
 #include "learning/completion_network.hpp"
 #include "learning/surface_network.hpp"
 #include "rhizodont/complete.hpp"
@@ -15,6 +16,7 @@ struct CompletionModels::Content {
   Atlas atlas;
   CompletionNetwork network;
   std::optional<SurfaceNetwork> skirt;
+  std::optional<LikenessModel> likeness;
 };
 
 }  // namespace rhizodont

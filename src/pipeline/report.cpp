@@ -46,6 +46,20 @@ Json repairs_json(const std::vector<RepairStep>& repairs) {
   return json;
 }
 
+Json likeness_json(const std::optional<CrownLikeness>& likeness) {
+  if (!likeness) return nullptr;
+  const auto tooth = [](const ToothLikeness& t) {
+    return Json{{"fdi", t.fdi}, {"probability", t.probability}, {"distance_mm", t.distance_mm}};
+  };
+  constexpr std::array<const char*, 3> verdicts{"fits", "other tooth", "unlike"};
+  return {{"verdict", verdicts[static_cast<std::size_t>(likeness->verdict)]},
+          {"said", tooth(likeness->said)},
+          {"next", {tooth(likeness->next[0]), tooth(likeness->next[1])}},
+          {"seen", likeness->seen},
+          {"explained", likeness->explained},
+          {"strangeness", likeness->strangeness}};
+}
+
 Json frame_json(const CompletionRecord& record) {
   return {{"growth_axis", numbers(record.growth_axis)},
           {"rotation", rows(record.frame_rotation)},
@@ -55,7 +69,9 @@ Json frame_json(const CompletionRecord& record) {
 }
 
 Json root_json(const CompletionRecord& record) {
-  Json json{{"length_mm", record.root_length_mm},
+  constexpr std::array<const char*, 3> sources{"network", "network, laid anew", "mean tooth"};
+  Json json{{"source", sources[static_cast<std::size_t>(record.root_source)]},
+            {"length_mm", record.root_length_mm},
             {"tooth_length_mm", record.tooth_length_mm},
             {"apex_expected_distance_mm", record.apex_expected_distance_mm},
             {"interval", nullptr}};
@@ -190,6 +206,7 @@ std::string completion_report(const CompletedTooth& tooth, const CompleteOptions
       {"input", input_json(input)},
       {"options", options_json(options)},
       {"fdi", {{"number", record.fdi}, {"guessed", record.fdi_guessed}}},
+      {"likeness", likeness_json(record.likeness)},
       {"frame", frame_json(record)},
       {"crown", crown_json(record)},
       {"repairs", repairs_json(record.repairs)},

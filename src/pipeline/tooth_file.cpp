@@ -71,6 +71,8 @@ MeshFile tooth_file(const CompletedTooth& tooth, const MeshFile& crown) {
   file.comments = {"whole tooth: scanned crown with a predicted root, not the patient's anatomy",
                    "source: 0 scan, 1 transition, 2 predicted",
                    "uncertainty: expected distance from the true surface, mm"};
+  if (tooth.record.millimetres_per_unit != 1)
+    file.comments.push_back("unit: " + unit_in_words(tooth.record.millimetres_per_unit));
   const Colours colours = colours_of(crown);
   for (const auto& [name, of_crown] : colours)
     file.vertex_attributes[name] = carried(of_crown, tooth.record.kept_vertices, tooth.mesh.vertices.size());

@@ -5,6 +5,7 @@
 #include "mesh/test_meshes.hpp"
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 namespace rhizodont {
@@ -91,6 +92,21 @@ TEST(Stl, RoundTripKeepsBitsAndOrder) {
     for (std::size_t i = 0; i < 3; ++i)
       EXPECT_EQ(once.mesh.vertices[static_cast<std::size_t>(once.mesh.triangles[t][i])],
                 mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][i])]);
+}
+
+TEST(Stl, TheHeaderNamesTheUnit) {
+  const test::TemporaryFolder folder;
+  MeshFile file;
+  file.mesh = cube();
+  const auto header = [&] {
+    save_mesh(folder.path() / "a.stl", file);
+    std::string start(30, ' ');
+    std::ifstream(folder.path() / "a.stl", std::ios::binary).read(start.data(), 30);
+    return start;
+  };
+  EXPECT_EQ(header().find("Rhizodont, millimetres "), 0U);
+  file.comments = {"a tooth", "unit: micrometres"};
+  EXPECT_EQ(header().find("Rhizodont, micrometres "), 0U);
 }
 
 TEST(Stl, DoubleCoordinatesAreNotSquashedSilently) {

@@ -3,6 +3,7 @@
 
 #include "rhizodont/complete.hpp"
 
+#include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/test_meshes.hpp"
 #include "pipeline/product_models.hpp"
@@ -12,6 +13,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -95,6 +97,42 @@ TEST(CompleteTooth, TheUnitOfTheInputIsThatOfTheOutput) {
   expect_crown_first(crown, tooth);
   EXPECT_LT(bounding_box(tooth.mesh.vertices).sizes().maxCoeff(), 0.03);
   EXPECT_GT(tooth.record.root_length_mm, 7) << "the report is in millimetres";
+}
+
+TEST(CompleteTooth, FarFromTheOriginTheToothIsTheSame) {
+  const TriangleMesh crown = sample("crown_34.ply");
+  const CompletedTooth near = complete_tooth(crown, models(), for_tooth(34));
+  for (const Point& away : {Point(8e4, -3e4, 5e4), Point(1e6, 0, 0), Point(-2e8, 1e8, 7)}) {
+    TriangleMesh moved = crown;
+    for (Point& p : moved.vertices) p += away;
+    const CompletedTooth tooth = complete_tooth(moved, models(), for_tooth(34));
+    expect_crown_first(moved, tooth);
+    EXPECT_TRUE(check(moved, tooth.mesh).holds());
+    EXPECT_NEAR(tooth.record.root_length_mm, near.record.root_length_mm, 0.2) << away.transpose();
+    EXPECT_LT((tooth.record.frame_centre - near.record.frame_centre - away).norm(), 1e-2);
+  }
+}
+
+TEST(CompleteTooth, FarFromTheOriginSinglePrecisionStaysOrIsSaidToBeTooCoarse) {
+  TriangleMesh crown = sample("crown_34.ply");
+  for (Point& p : crown.vertices) p = nearest_float(Point(p + Point(1e4, 8e4, -8e4)));
+  ASSERT_TRUE(coordinates_fit_float(crown));
+  const CompletedTooth tooth = complete_tooth(crown, models(), for_tooth(34));
+  expect_crown_first(crown, tooth);
+  const auto said = std::any_of(tooth.record.warnings.begin(), tooth.record.warnings.end(),
+                                [](const std::string& w) { return w.find("double precision") != std::string::npos; });
+  EXPECT_NE(coordinates_fit_float(tooth.mesh), said);
+}
+
+TEST(CompleteTooth, MicrometresFarFromTheOrigin) {
+  TriangleMesh crown = sample("crown_34.ply");
+  for (Point& p : crown.vertices) p = 1e3 * p + Point(3e6, 0, -4e6);
+  CompleteOptions options = for_tooth(34);
+  options.millimetres_per_unit = 1e-3;
+  const CompletedTooth tooth = complete_tooth(crown, models(), options);
+  expect_crown_first(crown, tooth);
+  EXPECT_GT(tooth.record.root_length_mm, 7);
+  EXPECT_GT(bounding_box(tooth.mesh.vertices).sizes().maxCoeff(), 1e4) << "in micrometres as the input";
 }
 
 TEST(CompleteTooth, WithoutANumberTheTypeIsGuessedAndSaid) {

@@ -5,6 +5,7 @@
 
 #include "mesh/adjacency.hpp"
 #include "mesh/test_meshes.hpp"
+#include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 
 #include <gtest/gtest.h>
@@ -73,9 +74,17 @@ TEST(CrownInput, TheUnitIsGuessedFromTheSize) {
   expect_complaint(scaled(bowl(), 0.1), "centimetres (--unit cm)");
   expect_complaint(scaled(bowl(), 1 / 25.4), "inches (--unit in)");
   expect_complaint(scaled(bowl(), 1e4), "teeth are 2 to 20 mm");
+  expect_complaint(scaled(bowl(), 1e3), "micrometres (--unit um)");
   // Read as centimetres, a crown in millimetres is too large; the hint speaks of the raw size.
   const TriangleMesh wrong = scaled(bowl(), 10);
-  EXPECT_THROW(require_tooth_size(wrong, 10), InputError);
+  EXPECT_NE(complaint(wrong, 10).find("Is it in millimetres (--unit mm)?"), std::string::npos);
+}
+
+TEST(CrownInput, UnitsHaveNames) {
+  EXPECT_EQ(unit_in_words(1), "millimetres");
+  EXPECT_EQ(unit_in_words(1e-3), "micrometres");
+  EXPECT_EQ(unit_in_words(25.4), "inches");
+  EXPECT_EQ(unit_in_words(3), "3 mm");
 }
 
 TEST(CrownInput, AClosedMeshMayBeLongerForItMayHaveARoot) {

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "completion/complete_points.hpp"
+#include "completion/frame.hpp"
+#include "completion/solidity.hpp"
+#include "pipeline/models.hpp"
+#include "rhizodont/complete.hpp"
+
+namespace rhizodont {
+
+/// A whole tooth for a crown, and the pose in which it was predicted.
+struct Prediction {
+  PredictedTooth tooth;
+  CrownFrame frame;
+  RootSource source = RootSource::network;
+  Solidity solidity;  ///< of the root's points
+};
+
+/// The network's tooth for a crown. Where its root comes out as shreds, the crown is laid anew (turned about its axis;
+/// upright by its form instead of its border) and the most solid root is taken; where none is solid, the mean tooth of
+/// the type, laid on the crown, with the uncertainty that has. `frame`: as found from the crown.
+/// Throws as `complete_points`, NoResultError where that does not fit either.
+Prediction predict_tooth(const TriangleMesh& crown, int fdi, const CrownFrame& frame,
+                         const CompletionModels::Content& models);
+
+}  // namespace rhizodont
