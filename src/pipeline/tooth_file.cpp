@@ -101,7 +101,7 @@ void refer_to_file(CompletionRecord& record, const MeshFile& crown, const std::f
 InputError in_terms_of_file(const InputError& error, const MeshFile& crown) {
   const std::string sentence = error.what();
   std::vector<std::int64_t> elements = error.elements();
-  if (crown.file_vertices.empty() || sentence.find("pairs of vertices") == std::string::npos) return error;
+  if (crown.file_vertices.empty() || sentence.find("of vertices)") == std::string::npos) return error;
   for (std::int64_t& v : elements)
     if (v >= 0 && static_cast<std::size_t>(v) < crown.file_vertices.size())
       v = crown.file_vertices[static_cast<std::size_t>(v)];

@@ -23,7 +23,7 @@ CompletedTooth small_tooth() {
   CompletionRecord& record = tooth.record;
   record.kept_vertices = {0, 2};
   record.dropped_vertices = {{1, "cap"}, {3, "skirt"}};
-  record.repairs = {{"merged", {1}, {5}}};
+  record.repairs = {{"merged", {1}, {5}, {3}}};
   record.promises.crown.dropped_vertices = {1, 3};
   record.warnings = {"first"};
   return tooth;
@@ -78,10 +78,13 @@ TEST(ToothFile, RecordsNameTheFilesOwnVertices) {
   EXPECT_EQ(record.dropped_vertices[0].vertex, 10);
   EXPECT_EQ(record.dropped_vertices[1].vertex, 30);
   EXPECT_EQ(record.repairs[0].vertices, std::vector<int>{10});
+  EXPECT_EQ(record.repairs[0].merged_into, std::vector<int>{30});
   EXPECT_EQ(record.repairs[0].triangles, std::vector<int>{5});
   EXPECT_EQ(record.promises.crown.dropped_vertices, (std::vector<int>{10, 30}));
   EXPECT_EQ(in_terms_of_file(InputError("Edges (pairs of vertices).", {1, 3}), crown).elements(),
             (std::vector<std::int64_t>{10, 30}));
+  EXPECT_EQ(in_terms_of_file(InputError("Openings (ids of vertices).", {2}), crown).elements(),
+            (std::vector<std::int64_t>{20}));
   EXPECT_EQ(in_terms_of_file(InputError("Cuts (pairs of triangles).", {1, 3}), crown).elements(),
             (std::vector<std::int64_t>{1, 3}));
 }
