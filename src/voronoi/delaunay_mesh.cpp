@@ -35,6 +35,8 @@
 namespace rhizodont {
 namespace {
 
+constexpr std::size_t looks_per_edge = 50;  // many times what meshes without flat triangles take
+
 /// Cotangent of the angle at c in the triangle (a, b, c).
 double cotangent(const Point& a, const Point& b, const Point& c) {
   const Eigen::Vector3d u = a - c;
@@ -77,7 +79,9 @@ class DelaunayBuilder {
     for (std::size_t t = 0; t < faces_.size(); ++t)
       for (int e = 0; e < 3; ++e)
         if (faces_[t].neighbours[e] > static_cast<int>(t)) queue_.push_back({corner(t, e), corner(t, e + 1)});
-    while (!queue_.empty()) {
+    // Flips end by themselves where angles are exact; rounded ones may turn flat pieces to and fro.
+    std::size_t allowed = looks_per_edge * (queue_.size() + 12 * limit_);
+    while (!queue_.empty() && allowed-- > 0) {
       const auto [a, b] = queue_.front();
       queue_.pop_front();
       if (hint_.size() < vertices_.size()) rebuild_hints();

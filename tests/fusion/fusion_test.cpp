@@ -72,6 +72,17 @@ TEST(Fusion, CrownWithAnInnerHoleIsFilled) {
   expect_promises(crown, complete(crown, turned(test::sphere(5, 5)), Eigen::Vector3d::UnitZ()));
 }
 
+TEST(Fusion, ASlitIsFilledAndNotTakenForTheBase) {
+  for (const double gap : {1e-3, 0.02}) {
+    const TriangleMesh crown = test::slit_dome(4, 5, gap);
+    const RestoredTooth tooth = complete(crown, turned(test::sphere(5, 5)), Eigen::Vector3d::UnitZ());
+    expect_promises(crown, tooth);
+    EXPECT_NEAR(volume(tooth.mesh), 4.0 / 3 * M_PI * 125, 10);
+    // No end of mending in a slit: its triangles are not many more than its edges.
+    EXPECT_LT(tooth.mesh.triangles.size(), 4 * crown.triangles.size());
+  }
+}
+
 TEST(Fusion, RaggedBorder) {
   const TriangleMesh crown = part(
       test::sphere(4, 5), [](const Point& p) { return p.z() > 0.4 + 0.8 * std::cos(9 * std::atan2(p.y(), p.x())); });

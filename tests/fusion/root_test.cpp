@@ -110,6 +110,21 @@ TEST(Root, TrianglesKeepPromiseThree) {
   for (const Point& p : fused.tooth.mesh.vertices) ASSERT_LT(index.closest(p).distance, 0.03);
 }
 
+TEST(Root, MendingEndsWithItsBudget) {
+  TriangleMesh crown = cap(4, 5, 0.5);
+  const auto edge = find_crown_border(crown).half_edges.front();
+  Point& p = crown.vertices[static_cast<std::size_t>(edge.first)];
+  p += 0.995 * (crown.vertices[static_cast<std::size_t>(edge.second)] - p);
+  FuseOptions options;
+  options.other_growths.clear();
+  const auto mended = [&] {
+    return fuse_crown_and_root(crown, test::sphere(5, 5), Eigen::Vector3d::UnitZ(), options).remeshing.mended;
+  };
+  EXPECT_GT(mended(), 0);
+  options.remesh.mending_places = 0;
+  EXPECT_EQ(mended(), 0);
+}
+
 TEST(Root, ShortBorderEdgesDoNotSpoilIt) {
   // Neighbouring border vertices moved together until the edges between them are a small share of their length.
   for (const double share : {0.02, 0.003, 0.0005}) {

@@ -28,30 +28,8 @@ TEST(BorderPieces, AreaVectorsSumToTheMeshs) {
   for (const int v : base.vertices) EXPECT_NEAR(crown.vertices[static_cast<std::size_t>(v)].z(), 0, 1e-9);
 }
 
-/// A dome cut open along a meridian, the two sides of the cut hardly apart.
 TEST(BorderPieces, ASlitLongerThanTheBaseIsNotTheBase) {
-  TriangleMesh crown = test::dome(5, 5);
-  std::vector<int> copy(crown.vertices.size(), -1);
-  const auto on_cut = [&](int v) {
-    const Point& p = crown.vertices[static_cast<std::size_t>(v)];
-    return std::abs(p.y()) < 1e-9 && p.z() > 0.5;
-  };
-  const int before = static_cast<int>(crown.vertices.size());
-  for (Triangle& t : crown.triangles) {
-    double y = 0;
-    for (const int v : t) y += crown.vertices[static_cast<std::size_t>(v)].y();
-    if (y < 0) continue;
-    for (std::int32_t& v : t) {
-      // The last vertices of the cut are shared, so that it does not reach the base.
-      if (v >= before || !on_cut(v) || crown.vertices[static_cast<std::size_t>(v)].z() < 0.8) continue;
-      int& c = copy[static_cast<std::size_t>(v)];
-      if (c < 0) {
-        c = static_cast<int>(crown.vertices.size());
-        crown.vertices.push_back(crown.vertices[static_cast<std::size_t>(v)] + Eigen::Vector3d(0, 1e-3, 0));
-      }
-      v = c;
-    }
-  }
+  const TriangleMesh crown = test::slit_dome(5, 5, 1e-3);
   const std::vector<BorderPiece> pieces = border_pieces(crown);
   ASSERT_EQ(pieces.size(), 2U);
   const std::size_t base = base_piece(pieces);

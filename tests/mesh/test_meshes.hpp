@@ -69,6 +69,28 @@ inline TriangleMesh dome(int levels, double radius = 1) {
   return submesh(ball, above).mesh;
 }
 
+/// The dome with a cut over its top, from one side nearly to the other: `gap` wide, in the plane y = 0.
+inline TriangleMesh slit_dome(int levels, double radius, double gap) {
+  TriangleMesh mesh = dome(levels, radius);
+  std::vector<int> copy(mesh.vertices.size(), -1);
+  for (Triangle& t : mesh.triangles) {
+    double y = 0;
+    for (const int v : t) y += mesh.vertices[static_cast<std::size_t>(v)].y();
+    if (y < 0) continue;
+    for (std::int32_t& v : t) {
+      const Point p = mesh.vertices[static_cast<std::size_t>(v)];
+      if (std::abs(p.y()) > 1e-9 || p.z() < 0.16 * radius) continue;
+      int& c = copy[static_cast<std::size_t>(v)];
+      if (c < 0) {
+        c = static_cast<int>(mesh.vertices.size());
+        mesh.vertices.push_back(p + Eigen::Vector3d(0, gap, 0));
+      }
+      v = c;
+    }
+  }
+  return mesh;
+}
+
 /// Torus about the z axis, n x m quads, outward.
 inline TriangleMesh torus(int n, int m, double big = 2, double small = 0.7) {
   TriangleMesh mesh;
