@@ -78,7 +78,7 @@ TEST(Report, OfARefusedCrownSaysWhyAndWhere) {
 TEST(Report, WhatItExcusesIsReadBackInTheMeshsNumbers) {
   CompletedTooth tooth;
   tooth.record.dropped_vertices = {{1, "cap"}, {2, "merged"}, {3, "skirt"}};
-  tooth.record.repairs = {{"merged", {2}, {}}, {"turned over", {}, {7, 8}}};
+  tooth.record.repairs = {{"merged", {2}, {}, {0}}, {"turned over", {}, {7, 8}}};
   EXPECT_EQ(vertices_not_of_tooth(tooth.record), (std::vector<int>{1, 3}));
   ReportedInput input;
   input.sha256 = std::string(64, 'a');
@@ -90,7 +90,10 @@ TEST(Report, WhatItExcusesIsReadBackInTheMeshsNumbers) {
   const auto file = folder.write("report.json", completion_report(tooth, for_tooth(34), input));
   const ExcusedByReport excused = excused_by_report(file, input.sha256, crown.file_vertices);
   EXPECT_EQ(excused.dropped_vertices, (std::vector<int>{1, 3}));
-  EXPECT_EQ(excused.repaired_triangles, (std::vector<int>{7, 8}));
+  ASSERT_EQ(excused.repairs.size(), 2U);
+  EXPECT_EQ(excused.repairs[0].vertices, std::vector<int>{2});
+  EXPECT_EQ(excused.repairs[0].merged_into, std::vector<int>{0});
+  EXPECT_EQ(excused.repairs[1].triangles, (std::vector<int>{7, 8}));
   EXPECT_THROW(excused_by_report(file, std::string(64, 'b'), crown.file_vertices), InputError);
   EXPECT_THROW(excused_by_report(file, input.sha256, {0, 1}), InputError);
   EXPECT_THROW(excused_by_report(folder.write("other.json", "{}"), input.sha256, {}), InputError);
