@@ -359,6 +359,15 @@ double area_of(const Closed& crown, const Mask& region) {
   return sum;
 }
 
+/// Area over that of a circle with the same rim.
+double roundness(const Closed& crown, const Mask& region) {
+  double rim = 0;
+  for (std::size_t t = 0; t < crown.size(); ++t)
+    for (std::size_t e = 0; region[t] && e < 3; ++e)
+      if (!region[crown.beyond(t, e)]) rim += crown.edge_length(t, e);
+  return rim > 0 ? 4 * M_PI * area_of(crown, region) / (rim * rim) : 0;
+}
+
 /// Area of a region that may be a cap; 0 where it cannot be one.
 double area_of_cap(const Closed& crown, const Mask& region, const MadeCapOptions& options) {
   const Eigen::Vector3d vector = area_vector_of(crown, region);
@@ -387,6 +396,7 @@ std::optional<std::vector<bool>> find_made_cap(const TriangleMesh& closed_crown,
   };
   const auto consider_with_rows = [&](const Mask& core, bool is_flat) {
     if (area_vector_of(crown, core).norm() < options.least_flatness * area_of(crown, core)) return;
+    if (roundness(crown, core) < options.least_roundness) return;
     Mask region = core;
     while (add_row(crown, region)) {
     }

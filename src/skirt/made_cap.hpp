@@ -15,8 +15,10 @@ struct MadeCapOptions {
   double flat_mm = 1e-3;      ///< mm, > 0: how far the corners of a flat base may lie from its plane
   int least_rim = 12;         ///< >= 3: edges around a cap
   double least_share = 0.25;  ///< (0, 1]: cross-section of a cap over that of the whole
-  double least_flatness = 0.6;  ///< [0, 1]: |sum of area vectors| / area of a cap but for its walls
-  double least_crown = 0.3;     ///< [0, 1): area of what is left over that of the whole
+  double least_flatness = 0.6;   ///< [0, 1]: |sum of area vectors| / area of a cap but for its walls
+  double least_roundness = 0.2;  ///< [0, 1): area of a cap over that of a circle with its rim; the band between the
+                                 ///< outer and the inner side of a shell is far below
+  double least_crown = 0.3;      ///< [0, 1): area of what is left over that of the whole
 };
 
 /// The triangles with which a program closed a crown's base, as far as they betray themselves: a fan about a vertex,

@@ -61,6 +61,17 @@ TEST(MadeCaps, SurfacesWithoutOneHaveNone) {
   EXPECT_FALSE(find_made_cap(test::sphere(4, 5)));
   EXPECT_FALSE(find_made_cap(test::cube()));
   EXPECT_FALSE(find_made_cap(test::torus(24, 12, 3, 1)));
+  // A hollow shell: the band between its outer and its inner side is no base.
+  const TriangleMesh outer = test::dome(4, 5), inner = test::dome(4, 4);
+  TriangleMesh shell = test::together(outer, flipped(inner), Point::Zero());
+  const std::vector<int> loop = border_loops(outer).front();
+  const auto offset = static_cast<std::int32_t>(outer.vertices.size());
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const std::int32_t a = loop[i], b = loop[(i + 1) % loop.size()];
+    shell.triangles.push_back({b, a, a + offset});
+    shell.triangles.push_back({b, a + offset, b + offset});
+  }
+  EXPECT_FALSE(find_made_cap(shell));
   // A base closed and meshed as finely as the crown is no sign of a program.
   const TriangleMesh open = load_mesh(samples / "crown_34.ply").mesh;
   const TriangleMesh smooth = test::refined_to(test::capped(open), open.vertices.size() * 4 / 3);
