@@ -47,6 +47,7 @@ Solidity solidity(const PredictedTooth& predicted, const Eigen::Vector3d& growth
 }
 
 double shreds(const Solidity& solidity) {
+  // Wide of what sound roots have by judgement, not by measurement: they catch loose clouds, not every crumbling root.
   constexpr double most_loose = 0.3, most_scatter_mm = 0.5;
   return std::max((1 - solidity.in_one_piece) / most_loose, solidity.scatter / most_scatter_mm);
 }
