@@ -147,13 +147,16 @@ bool is_tooth_surface(const TriangleMesh& open_crown) {
 KeptCrown tooth_of_raw_crown(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
                              CompletionRecord& record) {
   require_readable_crown(crown);
+  require_one_crown(crown);  // gum beside it is smaller
   const Submesh part = submesh(crown, sound_triangles(crown));
-  require_one_crown(part.mesh);
   const bool closed = diagnose(part.mesh).border_edges.empty();
   KeptCrown kept = open_part(part.mesh, closed, tools, options, record);
   drop_skirt(part.mesh, kept, *tools.skirt, *options.skirt, record);
   record.tooth_confidence = numbered_as_before(record.tooth_confidence, part.old_vertices, crown.vertices.size());
   if (part.old_triangles.size() < crown.triangles.size()) kept = all_between(crown, part, kept);
+  if (const std::vector<bool> open = triangles_without_slits(kept.mesh);
+      std::find(open.begin(), open.end(), false) != open.end())
+    keep_only(kept, open, "ragged border");
   if (is_tooth_surface(kept.mesh)) return kept;
   keep_only(kept, triangles_without_ragged_defects(kept.mesh), "ragged border");
   keep_only(kept, triangles_without_spikes(kept.mesh), "spike");

@@ -13,10 +13,12 @@
 #include "mesh/edge_distance.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/handles.hpp"
+#include "mesh/nearest_vertex.hpp"
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -172,6 +174,58 @@ class RaggedCrown {
 };
 
 }  // namespace
+
+std::vector<bool> triangles_without_slits(const TriangleMesh& open_crown, const RaggedPartOptions& options) {
+  if (!(options.depth >= 0) || !(options.slit >= 0 && options.slit <= 1))
+    throw UsageError("A ragged part has a depth of 0 mm or more, slits a width of 0 to 1 edges.");
+  const std::vector<BorderPiece> pieces = border_pieces(open_crown);
+  if (pieces.empty()) return std::vector<bool>(open_crown.triangles.size(), true);
+  const std::vector<double> depth =
+      distances_along_edges(open_crown, pieces[base_piece(pieces)].vertices, options.depth);
+  std::vector<int> border;
+  std::vector<Point> places;
+  std::vector<std::array<int, 2>> beside(open_crown.vertices.size(), {-1, -1});  // before and after on the border
+  for (const BorderPiece& piece : pieces) {
+    for (const auto& [a, b] : piece.half_edges) {
+      beside[at(a)][1] = b;
+      beside[at(b)][0] = a;
+    }
+    for (const int v : piece.vertices) {
+      border.push_back(v);
+      places.push_back(open_crown.vertices[at(v)]);
+    }
+  }
+  const double edge = mean_edge_length(open_crown);
+  // Along the border edges may be as short as they like; a slit goes there and back.
+  const auto along_border = [&](int v) {
+    std::vector<int> passed{v};
+    for (const std::size_t way : {std::size_t{0}, std::size_t{1}}) {
+      double length = 0;
+      for (int w = v; length < 1.5 * edge;) {
+        const int next = beside[at(w)][way];
+        if (next < 0 || next == v) break;
+        length += (open_crown.vertices[at(next)] - open_crown.vertices[at(w)]).norm();
+        if (length < 1.5 * edge) passed.push_back(next);
+        w = next;
+      }
+    }
+    return passed;
+  };
+  const NearestVertexIndex index(places);
+  std::vector<bool> gone(open_crown.vertices.size(), false);
+  for (const int v : border) {
+    if (!std::isfinite(depth[at(v)])) continue;
+    const auto near = index.within(open_crown.vertices[at(v)], options.slit * edge);
+    if (near.size() < 2) continue;
+    const std::vector<int> passed = along_border(v);
+    for (const NearVertex& n : near)
+      if (std::find(passed.begin(), passed.end(), border[at(n.index)]) == passed.end()) gone[at(v)] = true;
+  }
+  std::vector<bool> kept;
+  for (const Triangle& t : open_crown.triangles)
+    kept.push_back(std::none_of(t.begin(), t.end(), [&](int v) { return gone[at(v)]; }));
+  return kept;
+}
 
 std::vector<bool> sound_triangles(const TriangleMesh& crown) {
   std::vector<bool> sound(crown.triangles.size(), true);

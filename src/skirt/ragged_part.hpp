@@ -17,6 +17,7 @@ std::vector<bool> sound_triangles(const TriangleMesh& crown);
 struct RaggedPartOptions {
   double depth = 1.0;  ///< mm, >= 0: how far from the base's border, along edges, a defect belongs to the ragged part
   int rounds = 30;     ///< >= 1: one defect taken off may lay bare the next
+  double slit = 0.15;  ///< mean edge lengths, [0, 1]: borders nearer to each other than this are the sides of a slit
 };
 
 /// Per triangle of an opened crown whether it stays once the defects of its ragged part are taken off: edges with more
@@ -27,5 +28,10 @@ struct RaggedPartOptions {
 /// Vertices near the border are dropped for it even if they belong to the tooth: what stays has to be a surface.
 std::vector<bool> triangles_without_ragged_defects(const TriangleMesh& open_crown,
                                                    const RaggedPartOptions& options = {});
+
+/// Per triangle of an opened crown whether it stays once the slits of its ragged part are opened: vertices of the
+/// border within `depth` that nearly meet another part of it go. No triangle that fills a slit has a good angle.
+/// Precondition: border loops do not touch.
+std::vector<bool> triangles_without_slits(const TriangleMesh& open_crown, const RaggedPartOptions& options = {});
 
 }  // namespace rhizodont

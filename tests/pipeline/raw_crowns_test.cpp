@@ -89,6 +89,15 @@ TEST(RawCrown, ThatIsRefusedSaysThatTheSkirtIsTheReason) {
   }
 }
 
+TEST(RawCrown, OfTwoCrownsNoneIsChosen) {
+  const CutCrown cut = cut_crown(3);
+  TriangleMesh two = cut.mesh;
+  const auto shift = static_cast<std::int32_t>(two.vertices.size());
+  for (const Point& p : cut.mesh.vertices) two.vertices.push_back(p + Point(14, 0, 0));
+  for (const auto& [a, b, c] : cut.mesh.triangles) two.triangles.push_back({a + shift, b + shift, c + shift});
+  EXPECT_THROW(complete_tooth(two, models(), coarse(true)), InputError);
+}
+
 TEST(RawCrown, IsTheSameForTheSameSeed) {
   const CutCrown cut = cut_crown(1);
   for (const std::string& kind : test::raw_kinds()) {

@@ -145,6 +145,22 @@ TEST(RaggedDefects, CrowdedEdgesAndTouchingVerticesNearTheBorderGo) {
   EXPECT_LE(dropped_vertices(mesh, keep), 4);
 }
 
+TEST(Slits, AreOpenedNearTheBorderAlone) {
+  const TriangleMesh slit = test::slit_dome(4, 5, 1e-3);
+  RaggedPartOptions options;
+  EXPECT_LT(dropped_vertices(slit, triangles_without_slits(slit, options)), 8);  // its ends come near the base
+  options.depth = 100;
+  const TriangleMesh opened = submesh(slit, triangles_without_slits(slit, options)).mesh;
+  // Where two sides stood 1e-3 mm apart, there is a gap of two rows of triangles.
+  const auto pieces = border_pieces(opened);
+  ASSERT_EQ(pieces.size(), 2U);
+  EXPECT_GT(pieces[1 - base_piece(pieces)].area_vector.norm(), 2);
+  const std::vector<bool> all = triangles_without_slits(crown());
+  EXPECT_EQ(std::count(all.begin(), all.end(), false), 0);
+  options.slit = 2;
+  EXPECT_THROW(triangles_without_slits(crown(), options), UsageError);
+}
+
 TEST(RaggedDefects, OptionsAreLookedAt) {
   RaggedPartOptions options;
   options.depth = -1;
