@@ -29,7 +29,7 @@ CrownTraits drawn(int type, bool own, std::mt19937& random) {
   std::normal_distribution<float> normal;
   CrownTraits t;
   for (std::size_t i = 0; i < t.agreement.size(); ++i)
-    t.agreement[i] = 0.2F * normal(random) + (own ? 0.1F * static_cast<float>(type) : 2.0F);
+    t.agreement[i] = 0.2F * normal(random) + (own ? 0.1F * static_cast<float>(type) : 5.0F);
   for (float& offset : t.offsets) offset = 0.1F * normal(random) + (own ? 0.0F : 0.3F);
   return t;
 }
