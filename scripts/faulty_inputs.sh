@@ -16,9 +16,9 @@ limit=${LIMIT:-20}
 mkdir -p "$out"
 bad=0
 
-# Prints "code seconds sentence" of one run.
+# One run: sets code, seconds and said.
 run() {
-  local file=$1 fdi=$2 tooth=$3 start code check
+  local file=$1 fdi=$2 tooth=$3 start check
   shift 3
   rm -f "$tooth" "$tooth.json"
   start=$(date +%s.%N)
