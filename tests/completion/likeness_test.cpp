@@ -29,7 +29,7 @@ CrownTraits drawn(int type, bool own, std::mt19937& random) {
   std::normal_distribution<float> normal;
   CrownTraits t;
   for (std::size_t i = 0; i < t.agreement.size(); ++i)
-    t.agreement[i] = 0.2F * normal(random) + (own ? 0.1F * static_cast<float>(type) : 5.0F);
+    t.agreement[i] = 0.2F * normal(random) + (own ? 0.1F * static_cast<float>(type) : 2.0F);
   for (float& offset : t.offsets) offset = 0.1F * normal(random) + (own ? 0.0F : 0.3F);
   return t;
 }
@@ -41,7 +41,7 @@ std::vector<LikenessSample> drawn_samples(int per_type) {
     for (int type = 0; type < tooth_type_count; ++type) {
       LikenessSample sample{type, {}};
       const auto left = static_cast<std::size_t>(2 * type);
-      const auto other = static_cast<std::size_t>(2 * ((type + 1 + i) % tooth_type_count));
+      const auto other = static_cast<std::size_t>(2 * ((type + 1 + i % 15) % tooth_type_count));
       sample.traits.push_back({left, drawn(type, true, random)});
       sample.traits.push_back({left + 1, drawn(type, false, random)});
       sample.traits.push_back({other, drawn(type, false, random)});
