@@ -68,7 +68,7 @@ void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::strin
     fmt::print(out, "  root length with 80 % probability {:.1f} to {:.1f} mm, apex within {:.1f} mm\n",
                interval->length_low_mm, interval->length_high_mm, interval->apex_radius_mm);
   if (const auto& likeness = r.likeness)
-    fmt::print("  like a {}: {:.0f} %, {:.2f} mm from its mean crown; next {} ({:.0f} %) and {} ({:.0f} %)\n",
+    fmt::print(out, "  like a {}: {:.0f} %, {:.2f} mm from its mean crown; next {} ({:.0f} %) and {} ({:.0f} %)\n",
                likeness->said.fdi, 100 * likeness->said.probability, likeness->said.distance_mm, likeness->next[0].fdi,
                100 * likeness->next[0].probability, likeness->next[1].fdi, 100 * likeness->next[1].probability);
   const auto skirt = std::count_if(r.dropped_vertices.begin(), r.dropped_vertices.end(),

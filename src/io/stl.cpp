@@ -99,7 +99,7 @@ MeshFile read_of_other_size(std::string_view bytes) {
   if (announced > 0 && announced <= present) {
     MeshFile file = read_binary(bytes, announced);
     const std::size_t more = bytes.size() - header_size - announced * record_size;
-    file.notes.push_back(counted(more, "byte", "bytes") + " after the last triangle announced were passed over.");
+    file.notes.push_back(counted(more, "byte", "bytes") + " after the last triangle announced: passed over.");
     return file;
   }
   const std::size_t whole = std::min(announced, present);

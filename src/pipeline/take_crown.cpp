@@ -208,10 +208,12 @@ KeptCrown part_of_repaired(const TriangleMesh& crown, RepairedMesh repaired, con
   return kept;
 }
 
-/// The usable part of the crown, repaired if asked for; without it specks alone are taken off.
+/// The usable part of the crown, repaired if asked for; without it specks alone are taken off, unless a skirt is: all
+/// that is beside the tooth goes with it.
 KeptCrown mended_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
                       CompletionRecord& record) {
   if (options.repair) return part_of_repaired(crown, repair(crown), tools, options, record);
+  if (options.skirt) return usable_part(crown, tools, options, record);
   RepairedMesh without_specks = drop_specks(crown);
   if (without_specks.steps.empty()) return usable_part(crown, tools, options, record);
   return part_of_repaired(crown, std::move(without_specks), tools, options, record);

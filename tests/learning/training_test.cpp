@@ -131,6 +131,7 @@ TEST_F(Training, StartsFromOtherWeightsWithItsOwnTeeth) {
   EXPECT_NEAR(
       mean_x(load_floats(after.tensors.at("value.patches"))) - mean_x(load_floats(before.tensors.at("patches"))), 0.25,
       0.1);
+  options.folder = folder_ / "other";
   options.shape.width += options.shape.heads;
   EXPECT_THROW(train_completion(testing::tiny_sample, options), InputError);
 }
