@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "completion/solidity.hpp"
 
+#include "mesh/cross_sections.hpp"
 #include "mesh/disjoint_sets.hpp"
 #include "mesh/nearest_vertex.hpp"
 
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace rhizodont {
@@ -50,6 +52,18 @@ double shreds(const Solidity& solidity) {
   // Wide of what sound roots have by judgement, not by measurement: they catch loose clouds, not every crumbling root.
   constexpr double most_loose = 0.3, most_scatter_mm = 0.5;
   return std::max((1 - solidity.in_one_piece) / most_loose, solidity.scatter / most_scatter_mm);
+}
+
+double swelling(const TriangleMesh& tooth, const Eigen::Vector3d& growth_axis, double level) {
+  constexpr double below_border_mm = 1;  // where a ragged border no longer shapes the sections
+  constexpr double step_mm = 0.4;
+  constexpr double least_mm2 = 0.3;  // added to all: apices are thin without being threads
+  double most = 1, smallest = std::numeric_limits<double>::infinity();
+  for (const double area : cross_section_areas(tooth, growth_axis, level - below_border_mm, step_mm)) {
+    smallest = std::min(smallest, area);
+    most = std::max(most, (area + least_mm2) / (smallest + least_mm2));
+  }
+  return most;
 }
 
 }  // namespace rhizodont

@@ -69,8 +69,8 @@ CrownFrame find_frame(const TriangleMesh& crown, const CompletionModels::Content
 
 /// The predicted tooth, and what was done to get it.
 Prediction predict(const TriangleMesh& crown, const CrownFrame& frame, const CompletionModels::Content& models,
-                   CompletionRecord& record) {
-  Prediction prediction = predict_tooth(crown, record.fdi, frame, models);
+                   const std::function<bool(const Prediction&)>& makes_a_root, CompletionRecord& record) {
+  Prediction prediction = predict_tooth(crown, record.fdi, frame, models, makes_a_root);
   const CanonicalFrame& pose = prediction.frame.frame;
   record.type_residual_mm = prediction.frame.residual_mm;
   record.growth_axis = pose.direction_to_world(Eigen::Vector3d::UnitZ());
@@ -250,12 +250,17 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   const CrownFrame found = find_frame(crown.mesh, models, options, record);
   clock.begin("completion network");
   record.model = models.network.metadata();
-  Prediction prediction = predict(crown.mesh, found, models, record);
+  FittedSurface fitted;
+  const auto makes_a_root = [&](const Prediction& tried) {
+    clock.begin("orientation");
+    const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, tried.tooth.cloud);
+    clock.begin("guiding surface");
+    fitted = fitted_guiding_surface(cloud, crown.mesh, options.e);
+    return root_tapers(fitted.mesh, crown.mesh, tried.frame);
+  };
+  Prediction prediction = predict(crown.mesh, found, models, makes_a_root, record);
   PredictedTooth& predicted = prediction.tooth;
-  clock.begin("orientation");
-  const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, predicted.cloud);
-  clock.begin("guiding surface");
-  auto [surface, fit] = fitted_guiding_surface(cloud, crown.mesh, options.e);
+  auto& [surface, fit] = fitted;
   for (std::vector<Point>* points : {&surface.vertices, &predicted.cloud.points})
     steer_root(*points, crown.mesh, prediction.frame.frame, record.fdi, options.steering);
   note_guiding_distance(crown.mesh, surface, record);

@@ -8,6 +8,8 @@
 #include "pipeline/models.hpp"
 #include "rhizodont/complete.hpp"
 
+#include <functional>
+
 namespace rhizodont {
 
 /// A whole tooth for a crown, and the pose in which it was predicted.
@@ -20,9 +22,14 @@ struct Prediction {
 
 /// The network's tooth for a crown. Where its root comes out as shreds, the crown is laid anew (turned about its axis;
 /// upright by its form instead of its border) and the most solid root is taken; where none is solid, the mean tooth of
-/// the type, laid on the crown, with the uncertainty that has. `frame`: as found from the crown.
-/// Throws as `complete_points`, NoResultError where that does not fit either.
+/// the type, laid on the crown, with the uncertainty that has. `frame`: as found from the crown. `makes_a_root` has the
+/// last word on each prediction whose points are solid, best first, and is called for no other once it agreed. Throws
+/// as `complete_points`, NoResultError where that does not fit either.
 Prediction predict_tooth(const TriangleMesh& crown, int fdi, const CrownFrame& frame,
-                         const CompletionModels::Content& models);
+                         const CompletionModels::Content& models,
+                         const std::function<bool(const Prediction&)>& makes_a_root);
+
+/// Whether the root of a closed surface made of the prediction tapers towards its apex, as roots do and shreds do not.
+bool root_tapers(const TriangleMesh& surface, const TriangleMesh& crown, const CrownFrame& frame);
 
 }  // namespace rhizodont
