@@ -8,6 +8,8 @@ cd "$(dirname "$0")/.."
 scripts/install_dependencies.sh
 git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
 /usr/bin/python3 scripts/check_lengths.py
+/usr/bin/python3 scripts/check_rooms.py --self-test
+/usr/bin/python3 scripts/check_rooms.py
 cmake -S . -B build -G Ninja -DRHIZODONT_WERROR=ON -DRHIZODONT_TESTS=ON
 cmake --build build
 ctest --test-dir build --output-on-failure --no-tests=error -j 2

@@ -68,9 +68,9 @@ CrownFrame find_frame(const TriangleMesh& crown, const CompletionModels::Content
 }
 
 /// The predicted tooth, and what was done to get it.
-Prediction predict(const TriangleMesh& crown, const CrownFrame& frame, const CompletionModels::Content& models,
-                   const std::function<bool(const Prediction&)>& makes_a_root, CompletionRecord& record) {
-  Prediction prediction = predict_tooth(crown, record.fdi, frame, models, makes_a_root);
+RootPrediction predict(const TriangleMesh& crown, const CrownFrame& frame, const CompletionModels::Content& models,
+                       const std::function<bool(const RootPrediction&)>& makes_a_root, CompletionRecord& record) {
+  RootPrediction prediction = predict_tooth(crown, record.fdi, frame, models, makes_a_root);
   const CanonicalFrame& pose = prediction.frame.frame;
   record.type_residual_mm = prediction.frame.residual_mm;
   record.growth_axis = pose.direction_to_world(Eigen::Vector3d::UnitZ());
@@ -251,14 +251,14 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   clock.begin("completion network");
   record.model = models.network.metadata();
   FittedSurface fitted;
-  const auto makes_a_root = [&](const Prediction& tried) {
+  const auto makes_a_root = [&](const RootPrediction& tried) {
     clock.begin("orientation");
     const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, tried.tooth.cloud);
     clock.begin("guiding surface");
     fitted = fitted_guiding_surface(cloud, crown.mesh, options.e);
     return root_tapers(fitted.mesh, crown.mesh, tried.frame);
   };
-  Prediction prediction = predict(crown.mesh, found, models, makes_a_root, record);
+  RootPrediction prediction = predict(crown.mesh, found, models, makes_a_root, record);
   PredictedTooth& predicted = prediction.tooth;
   auto& [surface, fit] = fitted;
   for (std::vector<Point>* points : {&surface.vertices, &predicted.cloud.points})

@@ -93,15 +93,15 @@ Solidity root_solidity(const TriangleMesh& crown, const PredictedTooth& tooth, c
 
 }  // namespace
 
-Prediction predict_tooth(const TriangleMesh& crown, int fdi, const CrownFrame& frame,
-                         const CompletionModels::Content& models,
-                         const std::function<bool(const Prediction&)>& makes_a_root) {
+RootPrediction predict_tooth(const TriangleMesh& crown, int fdi, const CrownFrame& frame,
+                             const CompletionModels::Content& models,
+                             const std::function<bool(const RootPrediction&)>& makes_a_root) {
   const auto predict = [&](const CrownFrame& pose, RootSource source) {
-    Prediction prediction{complete_points(crown, fdi, pose, models.network), pose, source, {}};
+    RootPrediction prediction{complete_points(crown, fdi, pose, models.network), pose, source, {}};
     prediction.solidity = root_solidity(crown, prediction.tooth, pose);
     return prediction;
   };
-  Prediction best = predict(frame, RootSource::network);
+  RootPrediction best = predict(frame, RootSource::network);
   if (is_solid(best.solidity) && makes_a_root(best)) return best;
   const MeanCrown& mean = models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))];
   const RigidFit fit = mean_crown_on(crown, fdi, frame, mean);
@@ -115,16 +115,17 @@ Prediction predict_tooth(const TriangleMesh& crown, int fdi, const CrownFrame& f
     poses.push_back(by_form);
     poses.push_back(turned(by_form, std::numbers::pi));
   }
-  std::vector<Prediction> others;
+  std::vector<RootPrediction> others;
   for (const CrownFrame& pose : poses) {
-    Prediction other = predict(pose, RootSource::network_laid_anew);
+    RootPrediction other = predict(pose, RootSource::network_laid_anew);
     if (is_solid(other.solidity)) others.push_back(std::move(other));
   }
-  std::stable_sort(others.begin(), others.end(),
-                   [](const Prediction& a, const Prediction& b) { return shreds(a.solidity) < shreds(b.solidity); });
-  for (Prediction& other : others)
+  std::stable_sort(others.begin(), others.end(), [](const RootPrediction& a, const RootPrediction& b) {
+    return shreds(a.solidity) < shreds(b.solidity);
+  });
+  for (RootPrediction& other : others)
     if (makes_a_root(other)) return std::move(other);
-  Prediction fallback{mean_tooth_on(fdi, fit, models), by_form, RootSource::mean_tooth, {}};
+  RootPrediction fallback{mean_tooth_on(fdi, fit, models), by_form, RootSource::mean_tooth, {}};
   fallback.solidity = root_solidity(crown, fallback.tooth, by_form);
   if (!laid_well || !is_solid(fallback.solidity) || !makes_a_root(fallback))
     throw NoResultError(

@@ -13,7 +13,7 @@
 namespace rhizodont {
 
 /// A whole tooth for a crown, and the pose in which it was predicted.
-struct Prediction {
+struct RootPrediction {
   PredictedTooth tooth;
   CrownFrame frame;
   RootSource source = RootSource::network;
@@ -25,9 +25,9 @@ struct Prediction {
 /// the type, laid on the crown, with the uncertainty that has. `frame`: as found from the crown. `makes_a_root` has the
 /// last word on each prediction whose points are solid, best first, and is called for no other once it agreed. Throws
 /// as `complete_points`, NoResultError where that does not fit either.
-Prediction predict_tooth(const TriangleMesh& crown, int fdi, const CrownFrame& frame,
-                         const CompletionModels::Content& models,
-                         const std::function<bool(const Prediction&)>& makes_a_root);
+RootPrediction predict_tooth(const TriangleMesh& crown, int fdi, const CrownFrame& frame,
+                             const CompletionModels::Content& models,
+                             const std::function<bool(const RootPrediction&)>& makes_a_root);
 
 /// Whether the root of a closed surface made of the prediction tapers towards its apex, as roots do and shreds do not.
 bool root_tapers(const TriangleMesh& surface, const TriangleMesh& crown, const CrownFrame& frame);
