@@ -189,7 +189,7 @@ class Completion {
       for (CompletedTooth& tooth : candidates)
         tooth.record.warnings.push_back(fmt::format(
             "The crown's coordinates were rounded to float (--as-float), by {:.1g} mm at most.", *input.rounded_mm));
-    write_results(job, crown, candidates, options, input);
+    write_results(job, crown, candidates, input);
     if (!command_.quiet) print_results(job, candidates);
   }
 
@@ -206,7 +206,7 @@ class Completion {
 
   /// Their records refer to the crown's file from then on.
   void write_results(const CrownJob& job, const MeshFile& crown, std::vector<CompletedTooth>& candidates,
-                     const CompleteOptions& options, const ReportedInput& input) const {
+                     const ReportedInput& input) const {
     std::vector<OutputFile> results;
     const auto add_mesh = [&](const std::filesystem::path& path, const MeshFile& mesh) {
       results.push_back({path, mesh_file_bytes(name_with_format(path, command_.files.output_format), mesh)});
@@ -215,7 +215,7 @@ class Completion {
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       add_mesh(job.teeth[i], tooth_file(candidates[i], crown));
       refer_to_file(candidates[i].record, crown, name_with_format(job.teeth[i], command_.files.output_format));
-      if (!job.reports.empty()) results.push_back({job.reports[i], completion_report(candidates[i], options, input)});
+      if (!job.reports.empty()) results.push_back({job.reports[i], completion_report(candidates[i], input)});
     }
     write_output_files(results);
   }

@@ -145,6 +145,7 @@ struct CompletedTooth {
   TriangleMesh mesh;                 ///< in the input's unit and frame
   std::vector<VertexSource> source;  ///< per vertex
   std::vector<double> uncertainty;   ///< mm, per vertex: expected distance from the true surface; 0 on the crown
+  CompleteOptions options;           ///< that it was made with: those given, of a further candidate with its own length
   CompletionRecord record;
 };
 

@@ -26,7 +26,7 @@ struct ReportedInput {
 
 /// The report on a completed tooth as JSON text; numbers of vertices stand as in the record (`refer_to_file`). Schema:
 /// docs/report.schema.json.
-std::string completion_report(const CompletedTooth& tooth, const CompleteOptions& options, const ReportedInput& input);
+std::string completion_report(const CompletedTooth& tooth, const ReportedInput& input);
 
 /// The report on a crown that was refused or came to no result: the reason and all ids concerned, as they stand in the
 /// error (`in_terms_of_file`). `warnings`: what reading the file found.

@@ -241,6 +241,7 @@ TriangleMesh moved_by(TriangleMesh mesh, const Eigen::Vector3d& move) {
 CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Content& models,
                         const CompleteOptions& options, StageClock& clock) {
   CompletedTooth tooth;
+  tooth.options = options;
   CompletionRecord& record = tooth.record;
   clock.begin("crown");
   const Workplace place = workplace(input, options.millimetres_per_unit);
@@ -312,12 +313,10 @@ std::vector<CompletedTooth> complete_candidates(const TriangleMesh& crown, const
   if (!candidates.front().record.root_interval)
     throw UsageError(options.steering.any() ? "Candidates differ in what steering sets: ask for one of the two."
                                             : "Candidates need a completion network that was calibrated.");
-  // Copies: the vector moves its teeth when it grows.
+  // A copy: the vector moves its teeth when it grows.
   const RootInterval interval = *candidates.front().record.root_interval;
-  const int fdi = candidates.front().record.fdi;
   for (int i = 0; i + 1 < count; ++i) {
     CompleteOptions of_this = options;
-    of_this.fdi = fdi;
     const double share = count == 2 ? 0 : static_cast<double>(i) / (count - 2);
     of_this.steering.length_mm = std::lerp(interval.length_low_mm, interval.length_high_mm, share);
     candidates.push_back(complete_tooth(crown, models, of_this, progress));

@@ -196,7 +196,7 @@ std::vector<int> vertices_not_of_tooth(const CompletionRecord& record) {
   return vertices;
 }
 
-std::string completion_report(const CompletedTooth& tooth, const CompleteOptions& options, const ReportedInput& input) {
+std::string completion_report(const CompletedTooth& tooth, const ReportedInput& input) {
   const CompletionRecord& record = tooth.record;
   Json json = heading();
   json.update({
@@ -204,7 +204,7 @@ std::string completion_report(const CompletedTooth& tooth, const CompleteOptions
       {"skirt_model", record.skirt_model},
       {"notice", "A predicted root is not the patient's anatomy. For research and visualisation only."},
       {"input", input_json(input)},
-      {"options", options_json(options)},
+      {"options", options_json(tooth.options)},
       {"fdi", {{"number", record.fdi}, {"guessed", record.fdi_guessed}}},
       {"likeness", likeness_json(record.likeness)},
       {"frame", frame_json(record)},

@@ -39,7 +39,7 @@ TEST(Report, HasWhatTheSchemaAsksFor) {
   const CompletedTooth tooth = complete_tooth(crown.mesh, models(), for_tooth(34));
   ReportedInput input;
   input.sha256 = sha256_of_bytes(read_file_bytes(file));
-  auto report = json::parse(completion_report(tooth, for_tooth(34), input));
+  auto report = json::parse(completion_report(tooth, input));
   const json wanted = schema();
   expect_required(report, wanted["else"]["required"], wanted["properties"]);
   EXPECT_EQ(report.size(), wanted["else"]["required"].size());
@@ -49,7 +49,7 @@ TEST(Report, HasWhatTheSchemaAsksFor) {
   EXPECT_GT(report["stages"].size(), 4U);
   EXPECT_TRUE(report["input"]["file"].is_null()) << "names of files tell of patients";
   input.file_name = "caf\xe9_34.ply";  // Latin-1, no UTF-8
-  report = json::parse(completion_report(tooth, for_tooth(34), input));
+  report = json::parse(completion_report(tooth, input));
   EXPECT_EQ(report["input"]["file"], "caf\xef\xbf\xbd_34.ply");
 }
 
@@ -87,7 +87,7 @@ TEST(Report, WhatItExcusesIsReadBackInTheMeshsNumbers) {
   crown.file_vertices = {0, 4, 5, 9};
   refer_to_file(tooth.record, crown, "tooth.ply");
   const test::TemporaryFolder folder;
-  const auto file = folder.write("report.json", completion_report(tooth, for_tooth(34), input));
+  const auto file = folder.write("report.json", completion_report(tooth, input));
   const ExcusedByReport excused = excused_by_report(file, input.sha256, crown.file_vertices);
   EXPECT_EQ(excused.dropped_vertices, (std::vector<int>{1, 3}));
   ASSERT_EQ(excused.repairs.size(), 2U);

@@ -5,10 +5,14 @@
 #include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/report.hpp"
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <optional>
 
 namespace rhizodont {
 namespace {
@@ -99,6 +103,28 @@ TEST(RootWishes, CandidatesSpreadOverTheInterval) {
   EXPECT_NEAR(candidates[1].record.root_length_mm, interval.length_low_mm, 0.1);
   EXPECT_NEAR(candidates[2].record.root_length_mm, interval.length_high_mm, 0.1);
   for (const CompletedTooth& tooth : candidates) expect_promises(tooth);
+}
+
+TEST(RootWishes, CandidatesSayWhatTheyWereMadeWith) {
+  const auto candidates = complete_candidates(crown(), models(), 3);
+  ASSERT_EQ(candidates.size(), 3U);
+  const RootInterval interval = candidates[0].record.root_interval.value();
+  const std::array<std::optional<double>, 3> lengths{std::nullopt, interval.length_low_mm, interval.length_high_mm};
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const CompletedTooth& tooth = candidates[i];
+    EXPECT_TRUE(tooth.record.fdi_guessed) << i;
+    EXPECT_EQ(tooth.record.fdi, candidates[0].record.fdi) << i;
+    EXPECT_FALSE(tooth.options.fdi) << i;
+    EXPECT_EQ(tooth.options.steering.length_mm, lengths[i]) << i;
+    EXPECT_EQ(tooth.record.warnings.front(), candidates[0].record.warnings.front()) << i;
+    const auto report = nlohmann::json::parse(completion_report(tooth, {}));
+    EXPECT_TRUE(report["fdi"]["guessed"].get<bool>()) << i;
+    EXPECT_TRUE(report["options"]["fdi"].is_null()) << i;
+    const auto& length = report["options"]["steering"]["root_length_mm"];
+    EXPECT_EQ(length.is_null() ? std::nullopt : std::optional(length.get<double>()), lengths[i]) << i;
+    CompletedTooth again = complete_tooth(crown(), models(), tooth.options);
+    EXPECT_EQ(again.mesh.vertices, tooth.mesh.vertices) << i;
+  }
 }
 
 TEST(RootWishes, WhatCannotBeIsRefused) {
