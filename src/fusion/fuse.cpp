@@ -18,6 +18,7 @@
 #include <chrono>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 namespace rhizodont {
@@ -106,65 +107,74 @@ void improve_triangles(const Ground& ground, const FuseOptions& options, FusedTo
   fused.warnings.push_back("The root's triangles could not be improved.");
 }
 
-Joining join(const Ground& ground, const FuseOptions& options, const SeparationOptions& separation, FusedTooth& fused) {
+Joining join(const Ground& ground, const FuseOptions& options, const SeparationOptions& separation,
+             FuseSeconds& spent) {
   Stopwatch watch;
   const auto is_root = separate_crown_and_root(ground.surface, ground.distances, ground.growth_axis, separation);
-  watch.add_to(fused.seconds.separation);
+  watch.add_to(spent.separation);
   const std::vector<Point> root =
       root_sites(ground.walk, is_root, ground.crown, ground.border, ground.lengths, options.sites);
-  watch.add_to(fused.seconds.sites);
+  watch.add_to(spent.sites);
   Joining joining = join_crown_and_root(ground.crown, root, ground.surface, options.join);
-  watch.add_to(fused.seconds.joining);
-  fused.root_sites = static_cast<int>(root.size());
-  fused.crown_triangles_direct = joining.crown_triangles_direct;
-  fused.steiner_points = joining.steiner_points;
-  fused.non_delaunay_edges_left = joining.non_delaunay_edges_left;
-  fused.sites_without_cell = joining.sites_without_cell;
+  watch.add_to(spent.joining);
   return joining;
 }
 
-/// Restores, remeshes and smooths with one test for self-intersection at the end; false if the tooth does not pass.
-bool finish_at_once(const Ground& ground, const Joining& joining, const FuseOptions& options,
-                    const TransitionOptions& transition, FusedTooth& fused) {
+/// Restores, remeshes and smooths with one test for self-intersection at the end; nothing if the tooth does not pass.
+std::optional<FusedTooth> finished_at_once(const Ground& ground, const Joining& joining, const FuseOptions& options,
+                                           const TransitionOptions& transition, FuseSeconds& spent) {
+  FusedTooth fused;
   Stopwatch watch;
   RestoreOptions restore = options.restore;
   restore.test_cuts = false;
   fused.tooth = restore_crown(ground.crown, joining, restore);
-  watch.add_to(fused.seconds.restoring);
-  if (!diagnose(fused.tooth.mesh).is_closed_solid()) return false;
+  watch.add_to(spent.restoring);
+  if (!diagnose(fused.tooth.mesh).is_closed_solid()) return std::nullopt;
   fused.remeshing = remesh_root(fused.tooth, ground.walk, ground.lengths, {}, 0, options.remesh);
-  watch.add_to(fused.seconds.remeshing);
+  watch.add_to(spent.remeshing);
   TransitionOptions quick = transition;
   quick.cut_rounds = 1;
   fused.transition = smooth_transition(fused.tooth, quick);
-  watch.add_to(fused.seconds.transition);
-  return !fused.transition.cuts_itself;
+  watch.add_to(spent.transition);
+  if (fused.transition.cuts_itself) return std::nullopt;
+  return fused;
 }
 
 /// The same with a test after each step, so that the step that would break the tooth can be mended or left out.
-void finish_step_by_step(const Ground& ground, const Joining& joining, const FuseOptions& options,
-                         const TransitionOptions& transition, FusedTooth& fused) {
+FusedTooth finished_step_by_step(const Ground& ground, const Joining& joining, const FuseOptions& options,
+                                 const TransitionOptions& transition, FuseSeconds& spent) {
+  FusedTooth fused;
   Stopwatch watch;
   fused.tooth = restore_crown(ground.crown, joining, options.restore);
-  watch.add_to(fused.seconds.restoring);
+  watch.add_to(spent.restoring);
   if (!diagnose(fused.tooth.mesh).is_closed_solid())
     throw NoResultError("Crown and root together do not form a solid of one piece.");
   improve_triangles(ground, options, fused);
-  watch.add_to(fused.seconds.remeshing);
+  watch.add_to(spent.remeshing);
   fused.transition = smooth_transition(fused.tooth, transition);
-  watch.add_to(fused.seconds.transition);
+  watch.add_to(spent.transition);
   if (fused.transition.cuts_itself) throw NoResultError("The tooth cuts itself at the seam.");
+  return fused;
 }
 
-void attempt(const Ground& ground, const FuseOptions& options, const SeparationOptions& separation, FusedTooth& fused) {
-  const Joining joining = join(ground, options, separation, fused);
+/// One attempt's own tooth, its counts and its warnings; the time goes to the sum of all.
+FusedTooth attempt(const Ground& ground, const FuseOptions& options, const SeparationOptions& separation,
+                   FuseSeconds& spent) {
+  const Joining joining = join(ground, options, separation, spent);
   TransitionOptions transition = options.transition;
   transition.gap = ground.gap;
-  if (!finish_at_once(ground, joining, options, transition, fused))
-    finish_step_by_step(ground, joining, options, transition, fused);
+  std::optional<FusedTooth> at_once = finished_at_once(ground, joining, options, transition, spent);
+  FusedTooth fused = at_once ? *std::move(at_once) : finished_step_by_step(ground, joining, options, transition, spent);
+  fused.root_sites = static_cast<int>(joining.sites.size()) - joining.crown_vertices - joining.steiner_points;
+  fused.crown_triangles_direct = joining.crown_triangles_direct;
+  fused.steiner_points = joining.steiner_points;
+  fused.non_delaunay_edges_left = joining.non_delaunay_edges_left;
+  fused.sites_without_cell = joining.sites_without_cell;
+  fused.sharpest_notch = ground.border.sharpest_notch;
   if (fused.transition.applied < 0.9)
     fused.warnings.push_back(
         fmt::format("The seam between crown and root was smoothed to {:.0f} % only.", 100 * fused.transition.applied));
+  return fused;
 }
 
 /// The smallest angle of new triangles relative to what is wanted there: 1 or more if it is reached everywhere.
@@ -181,14 +191,12 @@ double least_angle_share(const RestoredTooth& tooth, const TransitionOptions& wa
 }
 
 /// Starts the root farther from the border until it can be joined.
-FusedTooth fuse_on(const Ground& ground, const FuseOptions& options) {
-  FusedTooth fused;
-  fused.sharpest_notch = ground.border.sharpest_notch;
+FusedTooth fuse_on(const Ground& ground, const FuseOptions& options, FuseSeconds& spent) {
   SeparationOptions separation = options.separation;
   std::vector<std::string> failures;
   for (int i = 1;; ++i) {
     try {
-      attempt(ground, options, separation, fused);
+      FusedTooth fused = attempt(ground, options, separation, spent);
       for (const std::string& sentence : failures)
         fused.warnings.push_back("The root was started farther from the crown's border: " + sentence);
       return fused;
@@ -200,32 +208,21 @@ FusedTooth fuse_on(const Ground& ground, const FuseOptions& options) {
   }
 }
 
-void add_seconds(const FuseSeconds& more, FuseSeconds& sum) {
-  sum.separation += more.separation;
-  sum.sites += more.sites;
-  sum.joining += more.joining;
-  sum.restoring += more.restoring;
-  sum.remeshing += more.remeshing;
-  sum.transition += more.transition;
-}
-
 }  // namespace
 
 FusedTooth fuse_crown_and_root(const TriangleMesh& crown, const TriangleMesh& guiding_surface,
                                const Eigen::Vector3d& growth_axis, const FuseOptions& options) {
-  FuseSeconds seconds;
+  FuseSeconds spent;
   Stopwatch watch;
   Ground ground(crown, guiding_surface, growth_axis, options);
-  watch.add_to(seconds.separation);
-  FusedTooth best = fuse_on(ground, options);
+  watch.add_to(spent.separation);
+  FusedTooth best = fuse_on(ground, options, spent);
   double share = least_angle_share(best.tooth, options.transition);
-  add_seconds(best.seconds, seconds);
   for (const double growth : options.other_growths) {
     if (share >= 1) break;
     ground.lengths = ground.edge_lengths(growth, options);
     try {
-      FusedTooth other = fuse_on(ground, options);
-      add_seconds(other.seconds, seconds);
+      FusedTooth other = fuse_on(ground, options, spent);
       const double others = least_angle_share(other.tooth, options.transition);
       if (others <= share) continue;
       share = others;
@@ -234,7 +231,7 @@ FusedTooth fuse_crown_and_root(const TriangleMesh& crown, const TriangleMesh& gu
       // There is a tooth already; this was to make it better.
     }
   }
-  best.seconds = seconds;
+  best.seconds = spent;
   return best;
 }
 

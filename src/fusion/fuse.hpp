@@ -40,7 +40,8 @@ struct FuseSeconds {
   double transition = 0;
 };
 
-/// A closed tooth made of the crown and the guiding surface's root, with what the steps on the way did.
+/// A closed tooth made of the crown and the guiding surface's root, with what the steps on the way did: those of the
+/// attempt that gave it, and nothing of those before, but for the seconds.
 struct FusedTooth {
   RestoredTooth tooth;
   RootRemeshing remeshing;

@@ -132,6 +132,52 @@ TEST(Fusion, NeedleTriangles) {
   expect_promises(crown, complete(crown, turned(test::sphere(5, 5)), Eigen::Vector3d::UnitZ()));
 }
 
+/// A crown with teeth along its border, and a guiding surface with folds around it that the root is hard to join on.
+FusedTooth fuse_with_folds(double depth, const FuseOptions& options) {
+  const TriangleMesh crown = part(
+      test::sphere(4, 5), [](const Point& p) { return p.z() > 0.4 + 0.8 * std::cos(9 * std::atan2(p.y(), p.x())); });
+  TriangleMesh surface = turned(test::sphere(5, 5));
+  for (Point& p : surface.vertices)
+    p *= 1 + depth / 5 * std::exp(-std::pow((p.z() - 0.3) / 0.6, 2)) * std::sin(15 * std::atan2(p.y(), p.x()));
+  const FusedTooth fused = fuse_crown_and_root(crown, surface, Eigen::Vector3d::UnitZ(), options);
+  expect_promises(crown, fused.tooth);
+  return fused;
+}
+
+/// Gives up early where steps would break the tooth.
+FuseOptions impatient() {
+  FuseOptions options;
+  options.other_growths.clear();
+  options.restore.rounds = 0;
+  options.remesh_attempts = 1;
+  options.transition.cut_rounds = 1;
+  return options;
+}
+
+TEST(Fusion, AFurtherAttemptSaysNothingOfWhatTheOneBeforeCounted) {
+  const FusedTooth second = fuse_with_folds(4, impatient());
+  ASSERT_FALSE(second.warnings.empty());
+  EXPECT_EQ(second.warnings.back(),
+            "The root was started farther from the crown's border: The tooth cuts itself at the seam.");
+  FuseOptions farther = impatient();
+  farther.separation.clearance = 1.6 * farther.separation.clearance + 0.15;  // where the second attempt begins
+  farther.attempts = 1;
+  const FusedTooth alone = fuse_with_folds(4, farther);
+  EXPECT_EQ(second.tooth.mesh.vertices, alone.tooth.mesh.vertices);
+  EXPECT_EQ(second.tooth.mesh.triangles, alone.tooth.mesh.triangles);
+  EXPECT_EQ(std::vector<std::string>(second.warnings.begin(), second.warnings.end() - 1), alone.warnings);
+  EXPECT_EQ(second.root_sites, alone.root_sites);
+  EXPECT_EQ(second.remeshing.splits, alone.remeshing.splits);
+  EXPECT_EQ(second.tooth.triangles_filled, alone.tooth.triangles_filled);
+}
+
+TEST(Fusion, RemeshingThatWasGivenUpCountsNothing) {
+  const FusedTooth fused = fuse_with_folds(2.5, impatient());
+  ASSERT_FALSE(fused.warnings.empty());
+  EXPECT_EQ(fused.warnings.front(), "The root's triangles could not be improved.");
+  EXPECT_EQ(fused.remeshing.splits + fused.remeshing.collapses + fused.remeshing.flips + fused.remeshing.mended, 0);
+}
+
 TEST(Fusion, ClosedCrownIsRefused) {
   const TriangleMesh ball = test::sphere(3, 5);
   EXPECT_THROW(fuse_crown_and_root(ball, ball, Eigen::Vector3d::UnitZ()), InputError);
