@@ -66,16 +66,18 @@ class RootPatch {
     });
   }
 
-  /// Joins a patch that does not touch the crown by two triangles between the nearest border edges of both.
+  /// Joins a patch that does not touch the crown by two triangles between the nearest border edges of both. Throws
+  /// NoResultError if the patch has no border.
   void bridge_to_crown() {
+    for (const Triangle& t : triangles_)
+      for (const auto& [a, b] : half_edges(t))
+        if (is_of_crown({b, a})) return;
     std::vector<HalfEdge> open;
     for (const HalfEdge& h : open_half_edges()) {
       if (h.first < crown_vertices() && h.second < crown_vertices()) continue;
       open.push_back(h);
     }
-    for (const Triangle& t : triangles_)
-      for (const auto& [a, b] : half_edges(t))
-        if (is_of_crown({b, a})) return;
+    if (open.empty()) throw NoResultError("The predicted root is closed by itself and does not meet the crown.");
     double best = std::numeric_limits<double>::max();
     HalfEdge ours, crowns;
     for (const HalfEdge& c : base_) {

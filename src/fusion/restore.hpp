@@ -28,7 +28,8 @@ struct RestoredTooth {
 /// Where the result cuts itself, root triangles are taken back around the place and the gap is filled again.
 ///
 /// `crown`: the one given to `join_crown_and_root`, manifold, its border loops not touching, one component.
-/// Throws NoResultError, with ids of the triangles, if no closed manifold without self-intersection is found.
+/// Throws NoResultError if the dual has no root or one that is closed by itself; with ids of the triangles, if no
+/// closed manifold without self-intersection is found.
 RestoredTooth restore_crown(const TriangleMesh& crown, const Joining& joining, const RestoreOptions& options = {});
 
 }  // namespace rhizodont

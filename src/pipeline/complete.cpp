@@ -40,7 +40,11 @@ void require_options_in_range(const CompleteOptions& options) {
     throw UsageError(fmt::format("e = {} mm is out of its range, 0.2 to 2 mm.", options.e));
   if (options.transition && !(*options.transition >= 0 && *options.transition <= 5))
     throw UsageError(fmt::format("A transition of {} mm is out of its range, 0 to 5 mm.", *options.transition));
-  if (!(options.millimetres_per_unit > 0)) throw UsageError("The unit must be a positive number of millimetres.");
+  if (options.skirt && !(*options.skirt > 0 && *options.skirt < 1))
+    throw UsageError(
+        fmt::format("A confidence for a skirt of {} is out of its range, above 0 and below 1.", *options.skirt));
+  if (!(options.millimetres_per_unit > 0 && std::isfinite(options.millimetres_per_unit)))
+    throw UsageError("The unit must be a positive number of millimetres.");
   if (options.threads < 0) throw UsageError("The number of threads cannot be negative.");
   if (options.fdi) tooth_type_of_fdi(*options.fdi);
   require_steering_in_range(options.steering);
@@ -308,13 +312,14 @@ CompletedTooth complete_tooth(const TriangleMesh& crown, const CompletionModels&
 std::vector<CompletedTooth> complete_candidates(const TriangleMesh& crown, const CompletionModels& models, int count,
                                                 const CompleteOptions& options, const ProgressCallback& progress) {
   if (count < 1 || count > 9) throw UsageError("There can be 1 to 9 candidates.");
+  if (count > 1 && options.steering.any())
+    throw UsageError("Candidates differ in what steering sets: ask for one of the two.");
+  if (count > 1 && !uncertainty_scales(models.content().network.metadata()))
+    throw UsageError("Candidates need a completion network that was calibrated.");
   std::vector<CompletedTooth> candidates{complete_tooth(crown, models, options, progress)};
   if (count == 1) return candidates;
-  if (!candidates.front().record.root_interval)
-    throw UsageError(options.steering.any() ? "Candidates differ in what steering sets: ask for one of the two."
-                                            : "Candidates need a completion network that was calibrated.");
   // A copy: the vector moves its teeth when it grows.
-  const RootInterval interval = *candidates.front().record.root_interval;
+  const RootInterval interval = candidates.front().record.root_interval.value();
   for (int i = 0; i + 1 < count; ++i) {
     CompleteOptions of_this = options;
     const double share = count == 2 ? 0 : static_cast<double>(i) / (count - 2);

@@ -180,13 +180,13 @@ class SplittableSurface {
     return m;
   }
 
-  /// All triangles that share a vertex with t, by turning around its corners.
+  /// All triangles that share a vertex with t, by turning around its corners: since each half-edge has one opposite,
+  /// every turn comes back to t.
   std::vector<int> around(int t) const {
     std::vector<int> found;
     for (int i = 0; i < 3; ++i) {
       const int vertex = mesh_.triangles[at(t)][at(i)];
-      int turn = neighbours_[at(t)][at(i)];
-      for (int steps = 0; turn != t && steps < 64; ++steps) {
+      for (int turn = neighbours_[at(t)][at(i)]; turn != t;) {
         found.push_back(turn);
         const Triangle& c = mesh_.triangles[at(turn)];
         const int k = c[0] == vertex ? 0 : c[1] == vertex ? 1 : 2;

@@ -178,6 +178,32 @@ TEST(Fusion, RemeshingThatWasGivenUpCountsNothing) {
   EXPECT_EQ(fused.remeshing.splits + fused.remeshing.collapses + fused.remeshing.flips + fused.remeshing.mended, 0);
 }
 
+TEST(Fusion, ARootThatIsClosedByItselfIsNotJoined) {
+  const TriangleMesh crown = test::dome(2, 5);
+  Joining joining;
+  joining.sites = crown.vertices;
+  joining.crown_vertices = static_cast<int>(crown.vertices.size());
+  const TriangleMesh ball = test::sphere(1, 2);
+  for (const Point& p : ball.vertices) joining.sites.push_back(p - Point(0, 0, 6));
+  for (Triangle t : ball.triangles) {
+    for (std::int32_t& v : t) v += joining.crown_vertices;
+    joining.triangles.push_back(t);
+  }
+  RestoreOptions untested;
+  untested.test_cuts = false;
+  for (const RestoreOptions& options : {RestoreOptions(), untested}) try {
+      restore_crown(crown, joining, options);
+      FAIL() << "joined";
+    } catch (const NoResultError& error) {
+      EXPECT_STREQ(error.what(), "The predicted root is closed by itself and does not meet the crown.");
+    }
+  // With an opening towards the crown it is.
+  joining.triangles.erase(joining.triangles.begin());
+  expect_promises(crown, restore_crown(crown, joining));
+  joining.triangles.clear();
+  EXPECT_THROW(restore_crown(crown, joining), NoResultError) << "no root at all";
+}
+
 TEST(Fusion, ClosedCrownIsRefused) {
   const TriangleMesh ball = test::sphere(3, 5);
   EXPECT_THROW(fuse_crown_and_root(ball, ball, Eigen::Vector3d::UnitZ()), InputError);

@@ -14,9 +14,14 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <limits>
+#include <string_view>
+#include <vector>
 
 namespace rhizodont {
 namespace {
@@ -162,6 +167,37 @@ TEST(CompleteTooth, OptionsOutOfRange) {
   options = for_tooth(34);
   options.threads = -1;
   EXPECT_THROW(complete_tooth(crown, models(), options), UsageError);
+}
+
+TEST(CompleteTooth, OptionsAreCheckedBeforeTheFirstStage) {
+  const TriangleMesh crown = sample("crown_34.ply");
+  const ProgressCallback no_stage = [](std::string_view stage) { FAIL() << stage; };
+  const double nan = std::nan(""), infinite = std::numeric_limits<double>::infinity();
+  const std::vector<std::function<void(CompleteOptions&)>> faults{
+      [](CompleteOptions& o) { o.skirt = 0.0; },
+      [](CompleteOptions& o) { o.skirt = 1.0; },
+      [&](CompleteOptions& o) { o.skirt = nan; },
+      [](CompleteOptions& o) { o.e = 2.1; },
+      [&](CompleteOptions& o) { o.e = nan; },
+      [](CompleteOptions& o) { o.transition = 5.1; },
+      [](CompleteOptions& o) { o.millimetres_per_unit = 0; },
+      [&](CompleteOptions& o) { o.millimetres_per_unit = infinite; },
+      [](CompleteOptions& o) { o.threads = -1; },
+      [](CompleteOptions& o) { o.steering.length_mm = 31; },
+      [&](CompleteOptions& o) { o.steering.length_mm = nan; },
+      [](CompleteOptions& o) { o.steering.tip_degrees = -31; },
+      [](CompleteOptions& o) { o.steering.torque_degrees = 31; },
+      [](CompleteOptions& o) { o.steering.bend_degrees = 46; },
+      [](CompleteOptions& o) { o.fdi = 19; },
+  };
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    CompleteOptions options = for_tooth(34);
+    faults[i](options);
+    EXPECT_THROW(complete_tooth(crown, models(), options, no_stage), UsageError) << i;
+  }
+  CompleteOptions steered = for_tooth(34);
+  steered.steering.length_mm = 14;
+  EXPECT_THROW(complete_candidates(crown, models(), 2, steered, no_stage), UsageError);
 }
 
 TEST(CompleteTooth, ARealCappedCrownIsOpenedAndCompleted) {

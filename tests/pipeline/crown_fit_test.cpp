@@ -12,6 +12,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace rhizodont {
 namespace {
 
@@ -73,6 +75,40 @@ TEST(CrownFit, DoesNotReachForACrownThatIsFarAway) {
   options.most_rounds = 2;
   fit_to_crown(surface, test::dome(4, radius), options);
   for (std::size_t v = 0; v < before.vertices.size(); ++v) EXPECT_EQ(before.vertices[v], surface.vertices[v]);
+}
+
+TEST(CrownFit, TurnsAroundAPoleOfHundredsOfTriangles) {
+  // A ball by latitude and longitude: its poles have 150 triangles each.
+  constexpr int around = 150, rings = 60;
+  TriangleMesh surface;
+  for (int r = 1; r < rings; ++r)
+    for (int i = 0; i < around; ++i) {
+      const double polar = std::numbers::pi * r / rings, turn = 2 * std::numbers::pi * i / around;
+      surface.vertices.emplace_back(1.01 * radius * std::sin(polar) * std::cos(turn),
+                                    1.01 * radius * std::sin(polar) * std::sin(turn), 1.01 * radius * std::cos(polar));
+    }
+  const int top = static_cast<int>(surface.vertices.size()), bottom = top + 1, last = (rings - 2) * around;
+  surface.vertices.emplace_back(0, 0, 1.01 * radius);
+  surface.vertices.emplace_back(0, 0, -1.01 * radius);
+  for (int i = 0; i < around; ++i) {
+    const int j = (i + 1) % around;
+    surface.triangles.push_back({top, i, j});
+    surface.triangles.push_back({bottom, last + j, last + i});
+    for (int r = 0; r + 2 < rings; ++r) {
+      const int a = r * around + i, b = r * around + j;
+      surface.triangles.push_back({a, a + around, b});
+      surface.triangles.push_back({b, a + around, b + around});
+    }
+  }
+  ASSERT_TRUE(diagnose(surface).is_closed_solid());
+  TriangleMesh crown = furrowed_crown();
+  for (Point& p : crown.vertices) p.z() -= 0.1 * std::exp(-p.head<2>().squaredNorm());  // a dent at the pole
+  CrownFitOptions options;
+  options.tolerance = 0.01;
+  const CrownFit fit = fit_to_crown(surface, crown, options);
+  EXPECT_FALSE(fit.undone);
+  EXPECT_TRUE(diagnose(surface).is_closed_solid());
+  EXPECT_LT(farthest(surface, crown), 0.03);
 }
 
 TEST(CrownFit, NeedsABorder) {
