@@ -37,7 +37,7 @@ struct CompleteOptions {
   /// misses the border.
   std::optional<double> transition;
   RootSteering steering;  ///< what the user knows or wants of the root
-  int threads = 0;        ///< >= 0: at most so many threads; 0: all
+  int threads = 0;        ///< >= 0: at most so many threads, for this call alone; 0: all that the caller may use
 };
 
 /// A vertex of the input that the tooth does not have, and why.

@@ -26,7 +26,7 @@
 #include "skirt/skirt.hpp"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -300,13 +300,17 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
 CompletedTooth complete_tooth(const TriangleMesh& crown, const CompletionModels& models, const CompleteOptions& options,
                               const ProgressCallback& progress) {
   require_options_in_range(options);
-  std::optional<tbb::global_control> limit;
-  if (options.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
-  StageClock clock(progress);
-  CompletedTooth tooth = complete(crown, models.content(), options, clock);
-  tooth.record.stages = clock.finish();
-  return tooth;
+  const auto completed = [&] {
+    StageClock clock(progress);
+    CompletedTooth tooth = complete(crown, models.content(), options, clock);
+    tooth.record.stages = clock.finish();
+    return tooth;
+  };
+  // An arena is this call's alone: calls side by side keep each their own limit. The networks run on one thread anyhow.
+  const int available = tbb::this_task_arena::max_concurrency();
+  if (options.threads == 0 || options.threads >= available) return completed();
+  tbb::task_arena arena(options.threads);
+  return arena.execute(completed);
 }
 
 std::vector<CompletedTooth> complete_candidates(const TriangleMesh& crown, const CompletionModels& models, int count,

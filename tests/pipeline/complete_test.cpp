@@ -11,16 +11,21 @@
 #include "rhizodont/error.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <barrier>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <future>
 #include <limits>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace rhizodont {
@@ -155,6 +160,36 @@ TEST(CompleteTooth, ClosedMeshesWithoutACapAreRefused) {
   EXPECT_THROW(complete_tooth(test::sphere(4, 4), models(), keep), InputError);
   const CompletedTooth tooth = complete_tooth(sample("crown_34.ply"), models(), for_tooth(34));
   EXPECT_THROW(complete_tooth(tooth.mesh, models(), for_tooth(34)), InputError) << "a whole tooth";
+}
+
+TEST(CompleteTooth, CallsSideBySideKeepTheirOwnLimits) {
+  const TriangleMesh crown = sample("crown_34.ply");
+  const auto process_wide = [] {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  };
+  const std::size_t before = process_wide();
+  const int all = tbb::this_task_arena::max_concurrency();
+  const std::vector<int> limits{1, 2, 0};
+  std::barrier meet(static_cast<std::ptrdiff_t>(limits.size()));
+  const auto run = [&](int limit) {
+    CompleteOptions options = for_tooth(34);
+    options.e = 1;
+    options.threads = limit;
+    const int expected = limit == 0 ? all : std::min(limit, all);
+    return complete_tooth(crown, models(), options, [&, first = true](std::string_view stage) mutable {
+      if (std::exchange(first, false)) meet.arrive_and_wait();  // all are under way
+      EXPECT_EQ(tbb::this_task_arena::max_concurrency(), expected) << stage;
+      EXPECT_EQ(process_wide(), before) << stage;
+    });
+  };
+  std::vector<std::future<CompletedTooth>> calls;
+  for (const int limit : limits) calls.push_back(std::async(std::launch::async, run, limit));
+  const CompletedTooth one = calls[0].get();
+  for (std::size_t i = 1; i < calls.size(); ++i) {
+    const CompletedTooth other = calls[i].get();
+    EXPECT_EQ(other.mesh.vertices, one.mesh.vertices) << limits[i];
+    EXPECT_EQ(other.mesh.triangles, one.mesh.triangles) << limits[i];
+  }
 }
 
 TEST(CompleteTooth, OptionsOutOfRange) {
