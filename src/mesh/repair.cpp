@@ -433,6 +433,7 @@ class Repair {
     step("speck dropped", [&] { return piece_.drop_pieces(PieceKind::speck); });
     step("separate piece dropped", [&] { return piece_.drop_pieces(PieceKind::small); });
     step("triangle turned over", [&] { return piece_.orient(); });
+    if (options_.connections_only) return any;
     step("dropped where the surface touches itself", [&] { return piece_.drop_touching_vertices(); });
     step("spike dropped", [&] { return piece_.drop_spikes(options_); });
     // The costly steps wait until the others have nothing left to do.

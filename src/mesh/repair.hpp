@@ -11,12 +11,14 @@
 namespace rhizodont {
 
 struct RepairOptions {
-  SeamOptions seam;              ///< what is merged although it is not at one place
-  double spike_height = 2.5;     ///< > 0: a vertex farther from its neighbours' mean than this many times their mean
-                                 ///< distance from that mean is a spike
-  double spike_least_mm = 0.3;   ///< mm, >= 0: lower ones are left
-  double most_cut_share = 0.05;  ///< [0, 1]: where more vertices than this share are at cuts of the surface with
-                                 ///< itself, they are left, for then no crown would be left either
+  SeamOptions seam;               ///< what is merged although it is not at one place
+  double spike_height = 2.5;      ///< > 0: a vertex farther from its neighbours' mean than this many times their mean
+                                  ///< distance from that mean is a spike
+  double spike_least_mm = 0.3;    ///< mm, >= 0: lower ones are left
+  double most_cut_share = 0.05;   ///< [0, 1]: where more vertices than this share are at cuts of the surface with
+                                  ///< itself, they are left, for then no crown would be left either
+  bool connections_only = false;  ///< only how triangles hang together is mended, so that the mesh can be walked over;
+                                  ///< what the surface's form betrays is left: touching vertices, spikes, tunnels, cuts
   int rounds = 16;  ///< >= 1: how often the steps are repeated, since one may lay bare the next defect; one
                     ///< tunnel is cut in each
 };

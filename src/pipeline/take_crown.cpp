@@ -10,12 +10,14 @@
 #include "pipeline/closed_crown.hpp"
 #include "pipeline/crown_input.hpp"
 #include "rhizodont/error.hpp"
+#include "skirt/made_cap.hpp"
 #include "skirt/ragged_part.hpp"
 #include "skirt/skirt_border.hpp"
 #include "skirt/skirt_network.hpp"
 #include "skirt/spikes.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace rhizodont {
 namespace {
@@ -47,23 +49,24 @@ KeptCrown open_crown(const TriangleMesh& crown, bool closed, const Atlas& atlas,
   return keep_crown(crown, keep, closed ? "cap" : "skirt", never);
 }
 
-/// Lists the triangles that are not kept although all their corners are: of a cap between vertices of the border.
-void list_dropped_triangles(const TriangleMesh& crown, const KeptCrown& kept, CompletionRecord& record) {
+/// Lists those of a cap's triangles that are not kept although all their corners, on the border, are.
+void list_dropped_cap(const TriangleMesh& crown, const std::vector<bool>& may_be_cap, const KeptCrown& kept,
+                      CompletionRecord& record) {
   std::vector<bool> is_left(crown.vertices.size(), false), is_kept(crown.triangles.size(), false);
   for (const int v : kept.old_vertices) is_left[static_cast<std::size_t>(v)] = true;
   for (const int t : kept.old_triangles) is_kept[static_cast<std::size_t>(t)] = true;
   RepairStep step{"cap between vertices of the crown's border dropped", {}, {}};
   for (std::size_t t = 0; t < crown.triangles.size(); ++t) {
     const Triangle& c = crown.triangles[t];
-    if (!is_kept[t] && std::all_of(c.begin(), c.end(), [&](int v) { return is_left[static_cast<std::size_t>(v)]; }))
+    if (may_be_cap[t] && !is_kept[t] &&
+        std::all_of(c.begin(), c.end(), [&](int v) { return is_left[static_cast<std::size_t>(v)]; }))
       step.triangles.push_back(static_cast<int>(t));
   }
   if (!step.triangles.empty()) record.repairs.push_back(std::move(step));
 }
 
-/// Reduces what is kept further, to the triangles of kept.mesh with a true entry in `keep`.
-void keep_only(KeptCrown& kept, const std::vector<bool>& keep, const std::string& reason) {
-  KeptCrown rest = keep_crown(kept.mesh, keep, reason);
+/// Reduces what is kept further, to what was kept of kept.mesh.
+void reduce_to(KeptCrown& kept, KeptCrown rest) {
   for (DroppedVertex& d : rest.dropped)
     kept.dropped.push_back({kept.old_vertices[static_cast<std::size_t>(d.vertex)], std::move(d.reason)});
   std::sort(kept.dropped.begin(), kept.dropped.end(),
@@ -73,6 +76,11 @@ void keep_only(KeptCrown& kept, const std::vector<bool>& keep, const std::string
   kept.mesh = std::move(rest.mesh);
   kept.old_vertices = std::move(rest.old_vertices);
   kept.old_triangles = std::move(rest.old_triangles);
+}
+
+/// Reduces what is kept further, to the triangles of kept.mesh with a true entry in `keep`.
+void keep_only(KeptCrown& kept, const std::vector<bool>& keep, const std::string& reason) {
+  reduce_to(kept, keep_crown(kept.mesh, keep, reason));
 }
 
 /// Confidences of a part's vertices put at their numbers in the whole; -1 for the others.
@@ -174,7 +182,7 @@ KeptCrown usable_part(const TriangleMesh& crown, const Tools& tools, const Compl
     kept = open_part(crown, closed, tools, options, record);
     require_outward_and_uncut(kept.mesh);
   }
-  if (record.cap_dropped) list_dropped_triangles(crown, kept, record);
+  if (record.cap_dropped) list_dropped_cap(crown, std::vector<bool>(crown.triangles.size(), true), kept, record);
   return kept;
 }
 
@@ -194,29 +202,77 @@ void number_as_input(KeptCrown& kept, const RepairedMesh& repaired, std::size_t 
     if (!reason[v].empty()) kept.dropped.push_back({static_cast<int>(v), reason[v]});
 }
 
-KeptCrown part_of_repaired(const TriangleMesh& crown, RepairedMesh repaired, const Tools& tools,
-                           const CompleteOptions& options, CompletionRecord& record) {
-  KeptCrown kept = usable_part(repaired.mesh, tools, options, record);
-  number_as_input(kept, repaired, crown.vertices.size());
+/// Puts a whole's numbers in the place of a part's in what was noted of the part.
+void number_record_as_whole(CompletionRecord& record, const std::vector<int>& old_vertices,
+                            const std::vector<int>& old_triangles, std::size_t vertices) {
   if (!record.tooth_confidence.empty())
-    record.tooth_confidence = numbered_as_before(record.tooth_confidence, repaired.old_vertices, crown.vertices.size());
-  for (RepairStep& step : record.repairs) {  // those of the part, in the input's numbers
-    for (int& t : step.triangles) t = repaired.old_triangles[static_cast<std::size_t>(t)];
-    repaired.steps.push_back(std::move(step));
+    record.tooth_confidence = numbered_as_before(record.tooth_confidence, old_vertices, vertices);
+  for (RepairStep& step : record.repairs) {
+    for (std::vector<int>* ids : {&step.vertices, &step.merged_into})
+      for (int& v : *ids) v = old_vertices[static_cast<std::size_t>(v)];
+    for (int& t : step.triangles) t = old_triangles[static_cast<std::size_t>(t)];
   }
+}
+
+/// What `take` keeps of the repaired crown, in the crown's numbers.
+KeptCrown part_of_repaired(const TriangleMesh& crown, RepairedMesh repaired, CompletionRecord& record,
+                           const std::function<KeptCrown(const TriangleMesh&)>& take) {
+  KeptCrown kept = take(repaired.mesh);
+  number_as_input(kept, repaired, crown.vertices.size());
+  number_record_as_whole(record, repaired.old_vertices, repaired.old_triangles, crown.vertices.size());
+  for (RepairStep& step : record.repairs) repaired.steps.push_back(std::move(step));
   record.repairs = std::move(repaired.steps);
   return kept;
 }
 
+KeptCrown mended_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
+                      CompletionRecord& record);
+
+/// Triangles of a cap that is to be dropped and betrays itself by the way in which a program made it.
+std::optional<std::vector<bool>> droppable_made_cap(const TriangleMesh& crown, const CompleteOptions& options) {
+  if (options.cap == CapHandling::keep || !diagnose(crown).is_closed_manifold()) return std::nullopt;
+  return find_made_cap(crown);
+}
+
+KeptCrown part_without_cap(const TriangleMesh& closed, const std::vector<bool>& is_cap, const Tools& tools,
+                           const CompleteOptions& options, CompletionRecord& record) {
+  require_tooth_size(closed, options.millimetres_per_unit, true);
+  std::vector<bool> keep = is_cap;
+  keep.flip();
+  KeptCrown kept = keep_crown(closed, keep, "cap", is_cap);
+  require_tooth_size(kept.mesh, options.millimetres_per_unit);
+  KeptCrown rest = mended_part(kept.mesh, tools, options, record);
+  number_record_as_whole(record, kept.old_vertices, kept.old_triangles, closed.vertices.size());
+  reduce_to(kept, std::move(rest));
+  record.cap_dropped = true;
+  list_dropped_cap(closed, is_cap, kept, record);
+  return kept;
+}
+
 /// The usable part of the crown, repaired if asked for; without it specks alone are taken off, unless a skirt is: all
-/// that is beside the tooth goes with it.
+/// that is beside the tooth goes with it. A made cap goes before anything is cut: it may cut itself or the crown, and
+/// what a cut leaves of it is no longer known for a cap.
 KeptCrown mended_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
                       CompletionRecord& record) {
-  if (options.repair) return part_of_repaired(crown, repair(crown), tools, options, record);
-  if (options.skirt) return usable_part(crown, tools, options, record);
+  const auto take = [&](const TriangleMesh& mesh) { return usable_part(mesh, tools, options, record); };
+  if (options.repair) {
+    RepairOptions first;
+    first.connections_only = true;
+    RepairedMesh connected = repair(crown, first);
+    if (const auto is_cap = droppable_made_cap(connected.mesh, options))
+      return part_of_repaired(crown, std::move(connected), record, [&](const TriangleMesh& closed) {
+        return part_without_cap(closed, *is_cap, tools, options, record);
+      });
+    return part_of_repaired(crown, repair(crown), record, take);
+  }
+  if (options.skirt) {
+    if (const auto is_cap = droppable_made_cap(crown, options))
+      return part_without_cap(crown, *is_cap, tools, options, record);
+    return take(crown);
+  }
   RepairedMesh without_specks = drop_specks(crown);
-  if (without_specks.steps.empty()) return usable_part(crown, tools, options, record);
-  return part_of_repaired(crown, std::move(without_specks), tools, options, record);
+  if (without_specks.steps.empty()) return take(crown);
+  return part_of_repaired(crown, std::move(without_specks), record, take);
 }
 
 /// Whether the crown would be taken with other options.

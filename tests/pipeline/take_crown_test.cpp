@@ -1,0 +1,86 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "pipeline/take_crown.hpp"
+
+#include "common/closed_bases.hpp"
+#include "mesh/self_intersection.hpp"
+#include "pipeline/models.hpp"
+#include "pipeline/product_models.hpp"
+#include "pipeline/report_parts.hpp"
+#include "rhizodont/check.hpp"
+#include "rhizodont/io.hpp"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+namespace rhizodont {
+namespace {
+
+using test::models;
+using test::source_folder;
+
+KeptCrown taken(const TriangleMesh& crown, const CompleteOptions& options, CompletionRecord& record) {
+  return take_crown(crown, models().content().atlas, models().content().skirt, options, record);
+}
+
+/// A crown closed by a fan from one corner of its border, which is no plane: the fan meets the crown.
+TriangleMesh crown_with_cutting_cap(const char* name) {
+  TriangleMesh closed = test::closed_base(load_mesh(source_folder / "samples" / name).mesh, "corner fan").mesh;
+  EXPECT_FALSE(self_intersecting_triangles(closed).empty());
+  return closed;
+}
+
+TEST(MadeCap, GoesBeforeItsCutsAreTakenOut) {
+  for (const auto& [name, fdi] : {std::pair{"crown_11.stl", 11}, std::pair{"crown_34.ply", 34}}) {
+    SCOPED_TRACE(name);
+    const TriangleMesh closed = crown_with_cutting_cap(name);
+    CompletionRecord plain;
+    const KeptCrown as_it_is = taken(closed, test::for_tooth(fdi), plain);
+    for (const bool skirt : {false, true}) {
+      CompleteOptions options = test::for_tooth(fdi);
+      options.repair = !skirt;
+      if (skirt) options.skirt = 0.5;
+      CompletionRecord record;
+      const KeptCrown kept = taken(closed, options, record);
+      EXPECT_EQ(kept.old_vertices, as_it_is.old_vertices);
+      EXPECT_EQ(kept.old_triangles, as_it_is.old_triangles);
+      EXPECT_TRUE(record.cap_dropped);
+      ASSERT_EQ(record.repairs.size(), 1U);
+      EXPECT_EQ(record.repairs.front().triangles, plain.repairs.front().triangles);
+    }
+  }
+}
+
+TEST(MadeCap, IsKnownOnceTheTrianglesHangTogether) {
+  TriangleMesh crown = crown_with_cutting_cap("crown_11.stl");
+  CompletionRecord plain;
+  const KeptCrown whole = taken(crown, test::for_tooth(11), plain);
+  // Turned over in places, one triangle twice, and a vertex that stands beside its twin.
+  for (std::size_t t = 0; t < 300; ++t) std::swap(crown.triangles[t][1], crown.triangles[t][2]);
+  crown.triangles.push_back(crown.triangles[1000]);
+  const std::int32_t split = crown.triangles[2000][0];
+  crown.vertices.push_back(crown.vertices[static_cast<std::size_t>(split)]);
+  crown.triangles[2000][0] = static_cast<std::int32_t>(crown.vertices.size()) - 1;
+
+  CompleteOptions options = test::for_tooth(11);
+  options.repair = true;
+  options.e = 1;
+  const CompletedTooth tooth = complete_tooth(crown, models(), options);
+  EXPECT_EQ(tooth.record.kept_vertices, whole.old_vertices);
+  EXPECT_TRUE(tooth.record.cap_dropped);
+  EXPECT_EQ(tooth.record.repairs.back().triangles, plain.repairs.front().triangles);
+  std::size_t turned = 0;
+  for (const RepairStep& step : tooth.record.repairs)
+    if (step.action == "triangle turned over") turned += step.triangles.size();
+  EXPECT_EQ(turned, 300U);
+  CheckOptions exact = allowing_for(tooth.record.repairs);
+  exact.compare_as_float = false;
+  exact.dropped_vertices = vertices_not_of_tooth(tooth.record);
+  const CheckReport report = check(crown, tooth.mesh, exact);
+  EXPECT_TRUE(report.holds()) << (report.failures.empty() ? "" : report.failures.front());
+}
+
+}  // namespace
+}  // namespace rhizodont
