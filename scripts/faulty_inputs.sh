@@ -6,7 +6,8 @@
 # table: exit code, seconds, what was said. The folder's README.md names the files and, in brackets, their FDI numbers.
 # usage: faulty_inputs.sh [FOLDER=../shared/data/faults] [OUT=results/faults]
 # Needs a built program. Ends with 1 if a command takes longer than LIMIT seconds (20), ends otherwise than with 0, 2, 3
-# or 4, leaves a tooth behind without 0, or if `check` does not hold on a result.
+# or 4, leaves a tooth behind without 0, if `check` does not hold on a result, or if --repair makes a tooth of what was
+# refused without a word of it.
 set -uo pipefail
 cd "$(dirname "$0")/.." || exit 1
 folder=${1:-../shared/data/faults}
@@ -40,8 +41,12 @@ echo "|---|---|---|---|---|---|---|---|"
 while read -r name fdi; do
   [ -e "$folder/$name" ] || continue
   run "$folder/$name" "$fdi" "$out/$name.ply"
-  row="| $name | $fdi | $code | $seconds | $said"
+  row="| $name | $fdi | $code | $seconds | $said" plain=$code
   run "$folder/$name" "$fdi" "$out/$name.repaired.ply" --repair
+  if [[ $plain == [34] && $code == 0 ]] && ! grep -q -e --repair "$out/$name.ply.txt"; then
+    code="0, but not hinted at"
+    bad=1
+  fi
   echo "$row | $code | $seconds | $said |"
 done < <(sed -n 's/^| \([^|]*\[[^]]*\]\) |.*/\1/p' "$folder/README.md" | awk '
   { open = index($0, "["); list = substr($0, open + 1); sub(/\].*/, "", list); files = substr($0, 1, open - 1)

@@ -111,7 +111,9 @@ std::string describe_pieces(const TriangleMesh& mesh, const Pieces& pieces) {
   if (like == 1)
     return fmt::format("Beside the crown there are {} smaller pieces that do not hang together with it.",
                        pieces.kinds.size() - 1);
-  if (are_parts_of_one(mesh, pieces))
+  constexpr std::size_t most_teeth =
+      52;  // milk teeth and all: more pieces are no crowns, and comparing them takes long
+  if (like > most_teeth || are_parts_of_one(mesh, pieces))
     return like == 2 ? "The crown is in 2 halves that do not hang together: give it in one piece."
                      : fmt::format("The crown is in {} parts that do not hang together: give it in one piece.", like);
   return like == 2 ? "There are 2 crowns in the mesh: give one."

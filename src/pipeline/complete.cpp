@@ -21,6 +21,7 @@
 #include "pipeline/report_parts.hpp"
 #include "pipeline/stage_clock.hpp"
 #include "pipeline/take_crown.hpp"
+#include "pipeline/way_out.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
 #include "skirt/skirt.hpp"
@@ -242,14 +243,27 @@ TriangleMesh moved_by(TriangleMesh mesh, const Eigen::Vector3d& move) {
   return mesh;
 }
 
-CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Content& models,
-                        const CompleteOptions& options, StageClock& clock) {
-  CompletedTooth tooth;
-  tooth.options = options;
+/// Whether with these options another part of the crown is kept than `kept_vertices`, and taken for a tooth.
+bool takes_another_part(const TriangleMesh& crown_at_work, const CompletionModels::Content& models,
+                        const CompleteOptions& options, const std::vector<int>& kept_vertices) {
+  try {
+    CompletionRecord record;
+    const KeptCrown part = take_crown(crown_at_work, models.atlas, models.skirt, options, record);
+    if (part.old_vertices == kept_vertices) return false;
+    find_frame(part.mesh, models, options, record);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+/// `tooth.record` says how far it came where this throws.
+void complete_at(const Workplace& place, const TriangleMesh& input, const TriangleMesh& crown_at_work,
+                 const CompletionModels::Content& models, StageClock& clock, CompletedTooth& tooth) {
+  const CompleteOptions& options = tooth.options;
   CompletionRecord& record = tooth.record;
   clock.begin("crown");
-  const Workplace place = workplace(input, options.millimetres_per_unit);
-  const KeptCrown crown = take_crown(moved_by(input, -place.origin), models.atlas, models.skirt, options, record);
+  const KeptCrown crown = take_crown(crown_at_work, models.atlas, models.skirt, options, record);
 
   clock.begin("frame");
   const CrownFrame found = find_frame(crown.mesh, models, options, record);
@@ -292,6 +306,27 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   for (std::string& missed : where_promise_three_is_missed(tooth.mesh, crown.old_vertices, crown.mesh.triangles.size(),
                                                            record.promises.new_triangles))
     record.warnings.push_back(std::move(missed));
+}
+
+/// A refusal names the options that may help.
+CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Content& models,
+                        const CompleteOptions& options, StageClock& clock) {
+  CompletedTooth tooth;
+  tooth.options = options;
+  const Workplace place = workplace(input, options.millimetres_per_unit);
+  const TriangleMesh crown_at_work = moved_by(input, -place.origin);
+  const auto hint = [&] {
+    return way_out(options, models.skirt.has_value(), [&](const CompleteOptions& other) {
+      return takes_another_part(crown_at_work, models, other, tooth.record.kept_vertices);
+    });
+  };
+  try {
+    complete_at(place, input, crown_at_work, models, clock, tooth);
+  } catch (const InputError& error) {
+    throw InputError(error.what() + hint(), error.elements());
+  } catch (const NoResultError& error) {
+    throw NoResultError(error.what() + hint(), error.elements());
+  }
   return tooth;
 }
 

@@ -275,29 +275,6 @@ KeptCrown mended_part(const TriangleMesh& crown, const Tools& tools, const Compl
   return part_of_repaired(crown, std::move(without_specks), record, take);
 }
 
-/// Whether the crown would be taken with other options.
-bool would_be_taken(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options) {
-  try {
-    CompletionRecord not_kept;
-    mended_part(crown, tools, options, not_kept);
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-/// A sentence on the option with which a crown that was refused would be taken; empty if there is none.
-std::string way_out(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options) {
-  CompleteOptions other = options;
-  other.skirt = SkirtBorderOptions().threshold;
-  if (!options.skirt && tools.skirt != nullptr && would_be_taken(crown, tools, other))
-    return " The option --skirt auto takes it off.";
-  other = options;
-  other.repair = true;
-  if (!options.repair && would_be_taken(crown, tools, other)) return " The option --repair may help.";
-  return {};
-}
-
 }  // namespace
 
 KeptCrown take_crown(const TriangleMesh& input, const Atlas& atlas, const std::optional<SurfaceNetwork>& skirt,
@@ -306,12 +283,7 @@ KeptCrown take_crown(const TriangleMesh& input, const Atlas& atlas, const std::o
     throw UsageError("The models' folder has no weights to find a skirt with (skirt.safetensors): use --skirt keep.");
   const Tools tools{atlas, skirt ? &*skirt : nullptr};
   const TriangleMesh crown = scaled(input, options.millimetres_per_unit);
-  KeptCrown kept;
-  try {
-    kept = mended_part(crown, tools, options, record);
-  } catch (const InputError& error) {
-    throw InputError(error.what() + way_out(crown, tools, options), error.elements());
-  }
+  KeptCrown kept = mended_part(crown, tools, options, record);
   record.crown_triangles = static_cast<int>(input.triangles.size());
   record.kept_triangles = static_cast<int>(kept.mesh.triangles.size());
   record.kept_vertices = kept.old_vertices;

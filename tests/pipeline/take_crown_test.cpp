@@ -4,15 +4,22 @@
 #include "pipeline/take_crown.hpp"
 
 #include "common/closed_bases.hpp"
+#include "common/hostile_crowns.hpp"
+#include "mesh/geometry.hpp"
 #include "mesh/self_intersection.hpp"
+#include "mesh/test_meshes.hpp"
 #include "pipeline/models.hpp"
 #include "pipeline/product_models.hpp"
 #include "pipeline/report_parts.hpp"
+#include "pipeline/way_out.hpp"
 #include "rhizodont/check.hpp"
+#include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
 namespace rhizodont {
@@ -80,6 +87,51 @@ TEST(MadeCap, IsKnownOnceTheTrianglesHangTogether) {
   exact.dropped_vertices = vertices_not_of_tooth(tooth.record);
   const CheckReport report = check(crown, tooth.mesh, exact);
   EXPECT_TRUE(report.holds()) << (report.failures.empty() ? "" : report.failures.front());
+}
+
+/// The options that a refusal of the crown names.
+std::string hint_at(const TriangleMesh& crown, const CompleteOptions& options, ErrorCode code) {
+  try {
+    complete_tooth(crown, models(), options);
+    ADD_FAILURE() << "was not refused";
+    return {};
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), code) << error.what();
+    const std::string said = error.what();
+    const std::size_t hint = said.find(" The option ");
+    return hint == std::string::npos ? std::string{} : said.substr(hint + 1);
+  }
+}
+
+TEST(WayOut, IsNamedAlsoWhereTheRootCannotBeJoined) {
+  TriangleMesh crown = test::coarsened_to(load_mesh(source_folder / "samples/crown_36.stl").mesh, 600);
+  const Eigen::Vector3d up = area_vector(crown).normalized();
+  const auto highest = std::max_element(crown.vertices.begin(), crown.vertices.end(),
+                                        [&](const Point& a, const Point& b) { return a.dot(up) < b.dot(up); });
+  *highest -= 14 * up;  // through the base
+  CompleteOptions options = test::for_tooth(36);
+  options.e = 1;
+  EXPECT_EQ(hint_at(crown, options, ErrorCode::no_result), "The option --repair may help; so may --skirt auto.");
+  options.repair = true;
+  EXPECT_NO_THROW(complete_tooth(crown, models(), options));
+}
+
+TEST(WayOut, IsNotNamedWhereThereIsNone) {
+  const TriangleMesh half_ball = test::dome(4, 0.8);
+  EXPECT_EQ(hint_at(half_ball, test::for_tooth(36), ErrorCode::unusable_input), "") << "too small";
+}
+
+TEST(WayOut, NamesWhatIsNotSetYetAndWouldBeTaken) {
+  CompleteOptions options;
+  const auto always = [](const CompleteOptions&) { return true; };
+  EXPECT_EQ(way_out(options, true, always), " The option --repair may help; so may --skirt auto.");
+  EXPECT_EQ(way_out(options, false, always), " The option --repair may help.");
+  EXPECT_EQ(way_out(options, true, [](const CompleteOptions& o) { return o.skirt.has_value(); }),
+            " The option --skirt auto may help.");
+  EXPECT_EQ(way_out(options, true, [](const CompleteOptions&) { return false; }), "");
+  options.repair = true;
+  EXPECT_EQ(way_out(options, true, [](const CompleteOptions& o) { return o.repair && o.skirt; }),
+            " The option --skirt auto may help.");
 }
 
 }  // namespace
