@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 
 namespace rhizodont {
 namespace {
@@ -22,15 +23,25 @@ struct EdgeKey {
   }
 };
 
+/// First those of the lowest vertex, and so on: counted, since a vertex has but a few and sorting all takes long.
 std::vector<EdgeKey> sorted_half_edges(const TriangleMesh& mesh) {
-  std::vector<EdgeKey> keys;
-  keys.reserve(3 * mesh.triangles.size());
-  for (int h = 0; h < static_cast<int>(3 * mesh.triangles.size()); ++h) {
-    const auto a = static_cast<std::uint64_t>(half_edge_from(mesh, h));
-    const auto b = static_cast<std::uint64_t>(half_edge_to(mesh, h));
-    keys.push_back({std::min(a, b) << 32 | std::max(a, b), h});
+  const int count = static_cast<int>(3 * mesh.triangles.size());
+  const auto lower_end = [&](int h) {
+    return static_cast<std::size_t>(std::min(half_edge_from(mesh, h), half_edge_to(mesh, h)));
+  };
+  std::vector<std::size_t> end(mesh.vertices.size() + 1,
+                               0);  // per vertex where its edges begin, at last where they end
+  for (int h = 0; h < count; ++h) ++end[lower_end(h) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<EdgeKey> keys(static_cast<std::size_t>(count));
+  for (int h = 0; h < count; ++h) {
+    const std::size_t lower = lower_end(h);
+    const auto higher = static_cast<std::uint64_t>(std::max(half_edge_from(mesh, h), half_edge_to(mesh, h)));
+    keys[end[lower]++] = {std::uint64_t{lower} << 32 | higher, h};
   }
-  std::sort(keys.begin(), keys.end());
+  std::size_t begin = 0;
+  for (std::size_t v = 0; v < mesh.vertices.size(); begin = end[v++])
+    std::sort(keys.begin() + static_cast<std::ptrdiff_t>(begin), keys.begin() + static_cast<std::ptrdiff_t>(end[v]));
   return keys;
 }
 

@@ -4,14 +4,18 @@
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Spatial_sort_traits_adapter_2.h>
 #include <CGAL/Triangulation_face_base_with_info_2.h>
 #include <CGAL/Triangulation_vertex_base_with_info_2.h>
+#include <CGAL/hilbert_sort.h>
+#include <CGAL/property_map.h>
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -95,13 +99,26 @@ void mark_inside(Triangulation& triangulation) {
   }
 }
 
+/// The order in which corners are inserted: along the outline each one may see most of those before it, which takes
+/// minutes for very many; along a curve that fills the plane it sees a few.
+std::vector<std::size_t> insertion_order(const std::vector<Point2>& points) {
+  constexpr std::size_t many = 2000;
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (points.size() < many) return order;
+  using Map = CGAL::Pointer_property_map<Point2>::const_type;
+  CGAL::hilbert_sort(order.begin(), order.end(),
+                     CGAL::Spatial_sort_traits_adapter_2<Kernel, Map>(CGAL::make_property_map(points)));
+  return order;
+}
+
 /// Nothing where the outline cuts or touches itself.
 std::optional<std::vector<Triangle>> cut_inside(const std::vector<Point2>& points,
                                                 std::span<const std::int32_t> corners) {
   Triangulation triangulation;
   std::map<std::int32_t, Triangulation::Vertex_handle> handles;
   Triangulation::Face_handle near;
-  for (std::size_t k = 0; k < corners.size(); ++k) {
+  for (const std::size_t k : insertion_order(points)) {
     if (handles.contains(corners[k])) continue;
     const auto handle = triangulation.insert(points[k], near);
     near = handle->face();

@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace rhizodont {
 namespace {
@@ -98,17 +99,121 @@ bool triangles_meet(const Soup& soup, const Triangle& a, const Triangle& b) {
   return CGAL::do_intersect(Triangle3(pa[0], pa[1], pa[2]), Triangle3(pb[0], pb[1], pb[2]));
 }
 
-std::vector<Pair> candidate_pairs(const Soup& soup) {
-  using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, int>;
-  std::vector<Box> boxes;
-  boxes.reserve(soup.triangles.size());
+/// Which side of the line from p to q the point r is on, seen along an axis: 1 or -1 where rounding cannot change it,
+/// else 0. Bound of the error: J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric
+/// predicates", 1997.
+int sure_side(const Point3& p, const Point3& q, const Point3& r, int first, int second) {
+  constexpr double relative = 4e-16, underflow = 1e-290;
+  const double left = (q[first] - p[first]) * (r[second] - p[second]);
+  const double right = (q[second] - p[second]) * (r[first] - p[first]);
+  const double sure = relative * (std::abs(left) + std::abs(right)) + underflow;
+  return left - right > sure ? 1 : left - right < -sure ? -1 : 0;
+}
+
+/// Whether, seen along an axis, a line along a side of `a` has `a` on one side and `b` on the other, but for corners of
+/// the side that both have: then they meet nowhere else. Spares most pairs the exact test, which takes long where
+/// triangles lie in one plane.
+bool is_apart_along_a_side(const Soup& soup, const Triangle& a, const Triangle& b) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const int from = a[i], to = a[(i + 1) % 3];
+      const auto side = [&](int v) {
+        return sure_side(soup.point(from), soup.point(to), soup.point(v), axis, (axis + 1) % 3);
+      };
+      const int own = side(a[(i + 2) % 3]);
+      if (own != 0 && std::all_of(b.begin(), b.end(), [&](int v) { return v == from || v == to || side(v) == -own; }))
+        return true;
+    }
+  return false;
+}
+
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, int>;
+
+/// Triangles by the vertex that very many of them have in common, as the fan of a large polygon has; `hubs` are those
+/// vertices, `at_hub` the triangles of each, `others` all the rest.
+struct Crowds {
+  std::vector<int> hubs;
+  std::vector<std::vector<int>> at_hub;
+  std::vector<int> others;
+};
+
+Crowds find_crowds(const Soup& soup) {
+  constexpr std::size_t few = 512, most_hubs = 64;
+  const std::size_t many = std::max(few, soup.triangles.size() / most_hubs);
+  std::vector<std::size_t> degree(soup.points.size(), 0);
+  for (const Triangle& t : soup.triangles)
+    for (const int v : t) ++degree[static_cast<std::size_t>(v)];
+  std::vector<int> number(soup.points.size(), -1);
+  Crowds crowds;
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-    const auto p = soup.corners(soup.triangles[t]);
-    boxes.emplace_back(p[0].bbox() + p[1].bbox() + p[2].bbox(), static_cast<int>(t));
+    const Triangle& c = soup.triangles[t];
+    const int hub = *std::max_element(c.begin(), c.end(), [&](int a, int b) {
+      return degree[static_cast<std::size_t>(a)] < degree[static_cast<std::size_t>(b)];
+    });
+    if (degree[static_cast<std::size_t>(hub)] <= many) {
+      crowds.others.push_back(static_cast<int>(t));
+      continue;
+    }
+    int& n = number[static_cast<std::size_t>(hub)];
+    if (n < 0) {
+      n = static_cast<int>(crowds.hubs.size());
+      crowds.hubs.push_back(hub);
+      crowds.at_hub.emplace_back();
+    }
+    crowds.at_hub[static_cast<std::size_t>(n)].push_back(static_cast<int>(t));
   }
+  return crowds;
+}
+
+std::vector<Box> boxes_of(const Soup& soup, const std::vector<int>& triangles) {
+  std::vector<Box> boxes;
+  boxes.reserve(triangles.size());
+  for (const int t : triangles) {
+    const auto p = soup.corners(soup.triangles[static_cast<std::size_t>(t)]);
+    boxes.emplace_back(p[0].bbox() + p[1].bbox() + p[2].bbox(), t);
+  }
+  return boxes;
+}
+
+/// Around the directions in which a triangle lies as seen from one of its corners: the arc between two points of the
+/// unit sphere. Triangles that meet anywhere but at that corner lie in a common direction.
+Box box_of_directions(const Soup& soup, int triangle, int corner) {
+  constexpr double rounding = 1e-12;
+  std::array<Eigen::Vector3d, 2> ends{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  std::size_t count = 0;
+  const Point3& from = soup.point(corner);
+  for (const int v : soup.triangles[static_cast<std::size_t>(triangle)]) {
+    if (v == corner || count == 2) continue;
+    const Point3& to = soup.point(v);
+    ends[count++] = Eigen::Vector3d(to.x() - from.x(), to.y() - from.y(), to.z() - from.z()).stableNormalized();
+  }
+  const double bulge = 1 - 0.5 * (ends[0] + ends[1]).norm() + rounding;  // of the arc beyond its chord
+  const Eigen::Vector3d low = ends[0].cwiseMin(ends[1]).array() - bulge,
+                        high = ends[0].cwiseMax(ends[1]).array() + bulge;
+  return {CGAL::Bbox_3(low.x(), low.y(), low.z(), high.x(), high.y(), high.z()), triangle};
+}
+
+/// Pairs that may meet: their boxes do, and where they have a hub in common, the directions in which they lie from it;
+/// and no side of one keeps them apart.
+std::vector<Pair> candidate_pairs(const Soup& soup) {
   std::vector<Pair> pairs;
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
-                                [&](const Box& a, const Box& b) { pairs.push_back(std::minmax(a.info(), b.info())); });
+  const auto note = [&](const Box& a, const Box& b) {
+    const Triangle& s = soup.triangles[static_cast<std::size_t>(a.info())];
+    const Triangle& t = soup.triangles[static_cast<std::size_t>(b.info())];
+    if (!is_apart_along_a_side(soup, s, t) && !is_apart_along_a_side(soup, t, s))
+      pairs.push_back(std::minmax(a.info(), b.info()));
+  };
+  const Crowds crowds = find_crowds(soup);
+  std::vector<Box> done = boxes_of(soup, crowds.others);
+  CGAL::box_self_intersection_d(done.begin(), done.end(), note);
+  for (std::size_t k = 0; k < crowds.hubs.size(); ++k) {
+    std::vector<Box> boxes = boxes_of(soup, crowds.at_hub[k]);
+    CGAL::box_intersection_d(boxes.begin(), boxes.end(), done.begin(), done.end(), note);
+    done.insert(done.end(), boxes.begin(), boxes.end());
+    std::vector<Box> directions;
+    for (const int t : crowds.at_hub[k]) directions.push_back(box_of_directions(soup, t, crowds.hubs[k]));
+    CGAL::box_self_intersection_d(directions.begin(), directions.end(), note);
+  }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

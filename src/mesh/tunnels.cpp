@@ -12,10 +12,13 @@
 #include "mesh/disjoint_sets.hpp"
 #include "mesh/handles.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <utility>
 
 namespace rhizodont {
 namespace {
@@ -47,20 +50,17 @@ class LoopFinder {
   /// The loops of a basis through a vertex, shortest first, without what they go there and back.
   std::vector<Loop> from(int root) const {
     const Tree tree = shortest_paths(root);
-    std::vector<int> rest;
-    for (std::size_t e = 0; e < table_.size(); ++e)
-      if (tree.over[static_cast<std::size_t>(table_.vertices[e][0])] != static_cast<int>(e) &&
-          tree.over[static_cast<std::size_t>(table_.vertices[e][1])] != static_cast<int>(e))
-        rest.push_back(static_cast<int>(e));
-    const auto detour = [&](int e) {
-      const auto [a, b] = table_.vertices[static_cast<std::size_t>(e)];
-      return tree.distance[static_cast<std::size_t>(a)] + tree.distance[static_cast<std::size_t>(b)] +
-             length_[static_cast<std::size_t>(e)];
-    };
-    std::stable_sort(rest.begin(), rest.end(), [&](int x, int y) { return detour(x) > detour(y); });
+    std::vector<std::pair<double, int>> rest;  // minus the length of the detour over an edge, and the edge
+    for (std::size_t e = 0; e < table_.size(); ++e) {
+      const auto a = static_cast<std::size_t>(table_.vertices[e][0]),
+                 b = static_cast<std::size_t>(table_.vertices[e][1]);
+      if (tree.over[a] != static_cast<int>(e) && tree.over[b] != static_cast<int>(e))
+        rest.emplace_back(-(tree.distance[a] + tree.distance[b] + length_[e]), static_cast<int>(e));
+    }
+    std::sort(rest.begin(), rest.end());
     DisjointSets faces(static_cast<std::size_t>(face_count_));
     std::vector<Loop> loops;
-    for (const int e : rest) {
+    for (const auto& [detour, e] : rest) {
       const auto [f, g] = faces_[static_cast<std::size_t>(e)];
       if (faces.find(f) == faces.find(g))
         loops.push_back(closed_by(e, tree));
@@ -163,13 +163,17 @@ std::vector<int> short_handle_loop(const TriangleMesh& mesh) {
   std::vector<Loop> loops = finder.from(mesh.triangles.front()[0]);
   Loop best = loops.front();
   loops.resize(std::min(loops.size(), followed));
-  const auto follow = [&](const std::vector<int>& loop) {
-    for (std::size_t k = 0; k < starts; ++k)
-      if (Loop found = finder.from(loop[k * loop.size() / starts]).front(); found.length < best.length)
-        best = std::move(found);
+  const auto follow = [&](const std::vector<Loop>& followed_loops) {
+    std::vector<Loop> found(starts * followed_loops.size());
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t k) {
+      const std::vector<int>& loop = followed_loops[k / starts].vertices;
+      found[k] = finder.from(loop[k % starts * loop.size() / starts]).front();
+    });
+    for (Loop& loop : found)
+      if (loop.length < best.length) best = std::move(loop);
   };
-  for (const Loop& loop : loops) follow(loop.vertices);
-  follow(std::vector<int>(best.vertices));
+  follow(loops);
+  follow({best});
   return best.vertices;
 }
 

@@ -88,6 +88,18 @@ TEST(CutPolygon, StarsInEveryPlaneAndFromEveryCorner) {
     }
 }
 
+TEST(CutPolygon, ManyCorners) {
+  std::vector<Point> points;  // a wavy outline, a little bent
+  constexpr int count = 5000;
+  for (int k = 0; k < count; ++k) {
+    const double angle = 2 * std::numbers::pi * k / count, radius = 1 + 0.2 * std::sin(25 * angle);
+    points.emplace_back(radius * std::cos(angle), radius * std::sin(angle), 0.1 * std::sin(3 * angle));
+  }
+  const CutPolygon cut = cut_polygon(points, count_up(points.size()));
+  EXPECT_EQ(cut.cut, PolygonCut::constrained);
+  expect_right(points, count_up(points.size()), cut, Eigen::Vector3d::UnitZ());
+}
+
 TEST(CutPolygon, BentConcavePolygons) {
   std::vector<Point> points = star(6);
   for (Point& p : points) p.z() = 0.1 * p.x() * p.x();

@@ -7,7 +7,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <random>
 
 namespace rhizodont {
 namespace {
@@ -85,6 +87,49 @@ TEST(SelfIntersection, RepeatedIndexIsNoCrossing) {
   TriangleMesh mesh = tetrahedron();
   mesh.triangles.push_back({0, 0, 1});
   EXPECT_TRUE(self_intersecting_triangles(mesh).empty());
+}
+
+/// Triangles at random about one vertex, which they all have.
+TriangleMesh wild_fan(int triangles) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  TriangleMesh fan{{Point::Zero()}, {}};
+  for (int t = 0; t < triangles; ++t) {
+    const Point p{coordinate(random), coordinate(random), coordinate(random)};
+    const Point step{coordinate(random), coordinate(random), coordinate(random)};
+    fan.vertices.push_back(p);
+    fan.vertices.emplace_back(p + 0.4 * step);
+    fan.triangles.push_back({0, 2 * t + 1, 2 * t + 2});
+  }
+  fan.triangles.push_back(fan.triangles.front());  // twice
+  fan.triangles.push_back({1, 7, 9});              // across others
+  return fan;
+}
+
+TEST(SelfIntersection, ACrowdAroundOneVertexIsSearchedByDirectionsWithTheSameResult) {
+  const TriangleMesh fan = wild_fan(700);
+  const Pairs found = self_intersecting_triangles(fan);
+  EXPECT_GT(found.size(), 500U);
+  // Among many more triangles the vertex is none that very many have: all pairs of boxes are looked at.
+  TriangleMesh among_others = fan;
+  for (int k = 0; k < 50000; ++k) {
+    const auto first = static_cast<std::int32_t>(among_others.vertices.size());
+    for (const Point& p : {Point(0, 0, 0), Point(0.5, 0, 0), Point(0, 0.5, 0)})
+      among_others.vertices.emplace_back(p + Point(10 + k % 200, k / 200, 0));
+    among_others.triangles.push_back({first, first + 1, first + 2});
+  }
+  EXPECT_EQ(self_intersecting_triangles(among_others), found);
+}
+
+TEST(SelfIntersection, AFlatFanOfManyTrianglesHasNone) {
+  constexpr int count = 20000;
+  TriangleMesh fan{{Point::Zero()}, {}};
+  for (int k = 0; k <= count; ++k) {
+    const double angle = 6.0 * k / count;
+    fan.vertices.emplace_back(std::cos(angle), std::sin(angle), 0.5 * std::cos(angle));
+  }
+  for (int k = 1; k <= count; ++k) fan.triangles.push_back({0, k, k + 1});
+  EXPECT_TRUE(self_intersecting_triangles(fan).empty());
 }
 
 TEST(SelfIntersection, RefusesBadInput) {
