@@ -108,7 +108,7 @@ std::vector<CrownJob> plan_complete(const CompleteFiles& files, const fs::path& 
   std::vector<fs::path> inputs = files_below(models), outputs, made_up;
   for (const std::string& crown : files.crowns) {
     const CrownJob& job = jobs.emplace_back(job_of(files, crown, made_up));
-    if (crown != "-") inputs.emplace_back(crown);
+    inputs.emplace_back(crown == "-" ? "/dev/stdin" : crown);  // the shell may have opened a file there
     for (const fs::path& tooth : job.teeth) require_mesh_ending(name_with_format(tooth, files.output_format));
     for (const fs::path& report : job.reports) require_no_mesh_ending(report, "a report");
     if (!job.confidence.empty()) require_ending(job.confidence, {".ply"}, "a crown with confidences");

@@ -111,6 +111,14 @@ std::string reason(const OutputPlace& place, int error) {
   }
 }
 
+/// A path as the user knows it: the program's own streams by what they are called.
+std::string shown(const fs::path& path) {
+  const auto end = end_of_links(path);
+  if (end && end->descriptor == STDIN_FILENO) return "standard input";
+  if (end && end->descriptor == STDOUT_FILENO) return "standard output";
+  return path.string();
+}
+
 [[noreturn]] void refuse(const fs::path& given, const std::string& why) {
   throw OutputError(fmt::format("{} cannot be written: {}. What was there before is unchanged.", given.string(), why));
 }
@@ -120,13 +128,18 @@ using Identity = std::tuple<dev_t, ino_t, std::string>;
 
 /// Equal for two names exactly if writing the one would change the other. Nothing for devices, which keep nothing.
 std::optional<Identity> identity_of(const fs::path& path) {
-  if (const auto there = status_of(path))
-    return S_ISCHR(there->st_mode) ? std::nullopt : std::optional(Identity{there->st_dev, there->st_ino, {}});
+  const auto of_file = [](const struct stat& there) {
+    return S_ISCHR(there.st_mode) ? std::nullopt : std::optional(Identity{there.st_dev, there.st_ino, {}});
+  };
+  if (const auto there = status_of(path)) return of_file(*there);
   const auto end = end_of_links(path);
   const fs::path place = fs::absolute(end ? end->path : path);
   std::error_code failure;
-  const fs::path canonical = fs::weakly_canonical(place, failure);
-  return Identity{0, 0, (failure ? place.lexically_normal() : canonical).string()};
+  fs::path canonical = fs::weakly_canonical(place, failure);
+  if (failure) canonical = place.lexically_normal();
+  // new/../file is there once the folder `new` is made
+  if (const auto there = status_of(canonical)) return of_file(*there);
+  return Identity{0, 0, canonical.string()};
 }
 
 }  // namespace
@@ -169,18 +182,24 @@ void require_writable_place(const fs::path& path) {
 
 void require_separate_files(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
   std::map<Identity, fs::path> read, written;
-  for (const fs::path& input : inputs)
+  for (const fs::path& input : inputs) {
+    const auto there = status_of(input);
+    if (there && S_ISSOCK(there->st_mode)) continue;  // its two directions are separate
     if (const auto identity = identity_of(input)) read.emplace(*identity, input);
+  }
   for (const fs::path& output : outputs) {
     const auto identity = identity_of(output);
     if (!identity) continue;
     if (const auto same = read.find(*identity); same != read.end())
       throw UsageError(
           fmt::format("{} would be written over {}, which is read: it is the same file. Give the result another name.",
-                      output.string(), same->second.string()));
-    if (const auto [same, is_new] = written.emplace(*identity, output); !is_new)
+                      shown(output), shown(same->second)));
+    const auto [same, is_new] = written.emplace(*identity, output);
+    if (!is_new && is_standard_output(output) && is_standard_output(same->second))
+      throw UsageError("Standard output takes one result only: give the others a file.");
+    if (!is_new)
       throw UsageError(fmt::format("{} and {} are the same file: each result needs a name of its own.",
-                                   same->second.string(), output.string()));
+                                   shown(same->second), shown(output)));
   }
 }
 

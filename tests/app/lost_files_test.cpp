@@ -148,6 +148,17 @@ TEST_F(LostFiles, AnOutputThatIsAnInputIsRefusedBeforeTheWork) {
     expect_nothing_lost(command, 2);
 }
 
+TEST_F(LostFiles, WhatTheShellOpenedAsStandardInputIsAnInput) {
+  fs::create_hard_link(at("tooth.ply"), at("link.json"));
+  fs::create_symlink("tooth.ply", at("neighbour_3.ply"));
+  for (const char* names : {"-o new/../tooth.ply", "-o older.ply --report link.json",
+                            "-o older.ply --skirt auto --skirt-confidence tooth.ply",
+                            "-o neighbour.ply --candidates 3 --overwrite", "-o /dev/fd/9"})
+    expect_nothing_lost(std::string("complete - --fdi 36 ") + names, 2, "standard input",
+                        "exec < tooth.ply 9>> tooth.ply;");
+  expect_error("complete - --fdi 36 -o ./crown.stl < crown.stl", 2, "over standard input, which is read");
+}
+
 TEST_F(LostFiles, TwoOutputsThatAreOneFileAreRefused) {
   fs::create_symlink("older.ply", at("link.json"));
   for (const char* command :

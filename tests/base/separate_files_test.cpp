@@ -47,6 +47,7 @@ class SeparateFiles : public ::testing::Test {
 TEST_F(SeparateFiles, AnOutputThatIsTheInputIsRefusedByAnyName) {
   for (const char* name : {"scan.stl", "./scan.stl", "sub/../scan.stl", "linked/../scan.stl", "link.ply", "hard.ply"})
     expect_refused("scan.stl", {name});
+  for (const char* name : {"missing/../scan.stl", "missing/too/../../link.ply"}) expect_refused("scan.stl", {name});
   for (const char* input : {"link.ply", "hard.ply"}) expect_refused(input, {"scan.stl"});
   expect_refused("scan.stl", {"new.ply", "scan.stl"});
   for (const char* name : {"other.stl", "new.ply", "sub/scan.stl"}) expect_taken("scan.stl", {name});
