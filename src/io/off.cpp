@@ -27,6 +27,7 @@ class OffReader {
     require_room(face_count, 2, "faces");
     faces_.reserve(static_cast<std::size_t>(face_count));
     for (std::int64_t f = 0; f < face_count; ++f) read_face(f, face_count);
+    read_faces_unannounced(face_count);
     add_colours(file_, colours_);
     if (has_face_colours_) file_.notes.emplace_back(triangle_colours_note);
     faces_.move_to(file_);
@@ -61,17 +62,26 @@ class OffReader {
     if (!same_word(from_name.substr(0, 3), "off"))
       throw InputError("this is no OFF file: it does not begin with 'OFF'");
     const std::string_view prefix = keyword.substr(0, name);
-    if (prefix.find_first_of("4n") != std::string_view::npos) fail("only three-dimensional OFF files are read");
     has_colours_ = same_word(prefix, "c");
     const std::string_view glued = from_name.substr(3);
+    if (prefix == "n" && glued.empty()) {  // the number of coordinates stands before the counts
+      TextCursor dimension = these_or_next_line(words);
+      if (dimension.word() != "3") fail("only three-dimensional OFF files are read");
+      return these_or_next_line(dimension);
+    }
+    if (prefix.find_first_of("4n") != std::string_view::npos) fail("only three-dimensional OFF files are read");
     if (!glued.empty()) return TextCursor(first.substr(static_cast<std::size_t>(glued.data() - first.data())));
     TextCursor rest = words;
     const auto second = rest.word();
     if (second && *second == "BINARY") fail("binary OFF files are not read; save it as text or as PLY");
-    if (second) return words;
-    const auto counts = content_line();
-    if (!counts) fail("the file ends within its header");
-    return TextCursor(*counts);
+    return these_or_next_line(words);
+  }
+
+  TextCursor these_or_next_line(TextCursor words) {
+    if (TextCursor ahead = words; ahead.word()) return words;
+    const auto line = content_line();
+    if (!line) fail("the file ends within its header");
+    return TextCursor(*line);
   }
 
   std::int64_t count(TextCursor& words, const char* what) const {
@@ -108,8 +118,23 @@ class OffReader {
     colours_.push_back(colour);
   }
 
-  void read_face(std::int64_t index, std::int64_t total) {
-    TextCursor words = record(index, total, "face");
+  /// Counts are sometimes wrong: what follows is read, as long as it is faces.
+  void read_faces_unannounced(std::int64_t announced) {
+    std::int64_t more = 0;
+    try {
+      for (auto line = content_line(); line; line = content_line(), ++more) read_face(TextCursor(*line));
+    } catch (const InputError&) {
+      file_.notes.push_back(
+          fmt::format("What follows the file's faces, from line {} on, is no face and was passed over.", line_));
+    }
+    if (more > 0)
+      file_.notes.push_back(
+          fmt::format("The file announces {} faces and holds {}: all were read.", announced, announced + more));
+  }
+
+  void read_face(std::int64_t index, std::int64_t total) { read_face(record(index, total, "face")); }
+
+  void read_face(TextCursor words) {
     std::int64_t corners = count(words, "a face's vertices");
     polygon_.clear();
     for (; corners > 0; --corners) {

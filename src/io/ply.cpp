@@ -164,6 +164,15 @@ class Body {
   std::int64_t line() const { return words_.line(); }
   std::size_t remaining() const { return ascii_ ? words_.remaining() : numbers_.remaining(); }
 
+  // How much is left, but for blanks and zeros at the end of a text.
+  std::size_t unread() const {
+    if (!ascii_) return numbers_.remaining();
+    TextCursor rest = words_;
+    const std::string_view text = rest.bytes(rest.remaining());
+    const auto last = text.find_last_not_of(std::string_view(" \t\r\n\v\f\0\x1a", 8));
+    return last == std::string_view::npos ? 0 : last + 1;
+  }
+
   // Least number of bytes that a number takes (a digit and a space).
   std::size_t least_size(AttributeType type) const { return ascii_ ? 2 : byte_size(type); }
 
@@ -223,6 +232,12 @@ class BodyReader {
         for (std::uint64_t i = 0; i < element.count && !element.properties.empty(); ++i) skip_record(element, i);
       }
     }
+    if (const std::size_t rest = body_.unread(); rest > 0)
+      file_.notes.push_back(
+          fmt::format("After all that its header announces the file goes on for {} bytes, which were passed over: if "
+                      "the crown is not "
+                      "whole, the file is damaged.",
+                      rest));
     faces_.move_to(file_);
     return std::move(file_);
   }
@@ -318,7 +333,8 @@ class BodyReader {
   template <class Take>
   void read_corner_lists(const Element& element, const Take& take) {
     const bool has_corners = std::any_of(element.properties.begin(), element.properties.end(), is_corner_list);
-    if (!has_corners && element.count > 0) throw InputError("the file's faces have no list of vertices");
+    if (!has_corners && element.count > 0)
+      throw InputError("the file's faces have no list of vertices" + instead(element));
     faces_.reserve(faces_.size() + element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
       for (const Property& property : element.properties) {
@@ -355,9 +371,21 @@ class BodyReader {
       file_.notes.emplace_back(triangle_colours_note);
   }
 
+  // What the faces have in place of a list of vertices.
+  static std::string instead(const Element& element) {
+    for (const Property& p : element.properties) {
+      if (!p.count_type) continue;
+      if (p.type >= AttributeType::float32 && is_corner_name(p.name))
+        return fmt::format(": '{}' holds decimal numbers, not whole ones", p.name);
+      return fmt::format(" (vertex_indices or vertex_index): their list is named '{:.30}'", p.name);
+    }
+    return {};
+  }
+
+  static bool is_corner_name(const std::string& name) { return name == "vertex_indices" || name == "vertex_index"; }
+
   static bool is_corner_list(const Property& property) {
-    return property.count_type && property.type < AttributeType::float32 &&
-           (property.name == "vertex_indices" || property.name == "vertex_index");
+    return property.count_type && property.type < AttributeType::float32 && is_corner_name(property.name);
   }
 
   Header header_;

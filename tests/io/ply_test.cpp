@@ -174,6 +174,26 @@ TEST(Ply, BadContentsAreRefused) {
   }
 }
 
+TEST(Ply, WhatFollowsTheAnnouncedIsSaid) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_TRUE(load_bytes("a.ply", text + " \r\n\x1a").notes.empty());
+  EXPECT_TRUE(test::notes_hold(load_bytes("a.ply", text + "3 0 2 1\n"), "goes on for 8 bytes"));
+  MeshFile file;
+  file.mesh = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  const std::string binary = mesh_file_bytes("a.ply", file);
+  EXPECT_TRUE(load_bytes("a.ply", binary).notes.empty());
+  EXPECT_TRUE(test::notes_hold(load_bytes("a.ply", binary + "rubbish"), "goes on for 7 bytes"));
+  for (const auto& [from, to, words] :
+       {std::array{"int vertex_indices", "float vertex_indices", "'vertex_indices' holds decimal numbers"},
+        {"int vertex_indices", "int corners", "their list is named 'corners'"}}) {
+    std::string other = text;
+    other.replace(other.find(from), std::string(from).size(), to);
+    expect_refused("a.ply", other, words);
+  }
+}
+
 TEST(Ply, StripsMayBeginAgainAndTurnEverySecondTime) {
   const std::string head =
       "format ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float z\nelement camera "

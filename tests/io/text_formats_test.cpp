@@ -25,6 +25,25 @@ TEST(Obj, ReadsEveryKindOfFace) {
   }
 }
 
+TEST(Off, FacesBeyondTheAnnouncedAreRead) {
+  const std::string vertices = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+  const MeshFile file = load_bytes("a.off", "OFF\n4 1 0\n" + vertices + "3 0 1 2\n3 0 2 3\n");
+  EXPECT_EQ(file.mesh.triangles, fan);
+  EXPECT_TRUE(test::notes_hold(file, "announces 1 faces and holds 2: all were read"));
+  const MeshFile odd = load_bytes("a.off", "OFF\n4 2 0\n" + vertices + "3 0 1 2\n3 0 2 3\nthe end\n");
+  EXPECT_EQ(odd.mesh.triangles, fan);
+  EXPECT_TRUE(test::notes_hold(odd, "from line 9 on, is no face and was passed over"));
+  EXPECT_TRUE(load_bytes("a.off", "OFF\n4 2 0\n" + vertices + "3 0 1 2\n3 0 2 3\n# end\n\n").notes.empty());
+}
+
+TEST(Off, OfAnyDimensionThreeIsRead) {
+  const std::string rest = "4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n";
+  for (const char* header : {"nOFF\n3\n", "nOFF 3\n", "nOFF 3 ", "nOFF\n# dimension\n3 # three\n"})
+    EXPECT_EQ(load_bytes("a.off", header + rest).mesh.triangles, fan) << header;
+  expect_refused("a.off", "nOFF\n4\n" + rest, "only three-dimensional");
+  expect_refused("a.off", "4nOFF\n3\n" + rest, "only three-dimensional");
+}
+
 TEST(Obj, NumbersAreDoubles) {
   const MeshFile file = load_bytes("a.obj", "v 0.1 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3");
   EXPECT_EQ(file.mesh.vertices[0].x(), 0.1);
