@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "commands.hpp"
 #include "complete_jobs.hpp"
+#include "io/cursors.hpp"
 #include "learning/blas.hpp"
 #include "number_options.hpp"
 #include "rhizodont/complete.hpp"
@@ -82,8 +83,8 @@ void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::strin
 
 /// keep, auto, or the confidence from which a vertex is tooth.
 std::optional<double> skirt_threshold(const std::string& text) {
-  if (text == "keep") return std::nullopt;
-  if (text == "auto") return 0.5;
+  if (same_word(text, "keep")) return std::nullopt;
+  if (same_word(text, "auto")) return 0.5;
   double value = 0;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (failure != std::errc() || end != text.data() + text.size() || !(value > 0 && value < 1))
@@ -158,6 +159,7 @@ class Completion {
   void complete_one(const CrownJob& job, std::size_t place, const CompleteOptions& options, ReportedInput& input,
                     std::vector<std::string>& notes) {
     MeshFile crown = read_crown(job, input);
+    if (job.fdi_from_name) crown.notes.push_back(fmt::format("Tooth {}, taken from the file's name.", *job.fdi));
     notes = crown.notes;
     if (command_.as_float) {
       const double moved = round_to_float(crown.mesh);
@@ -222,7 +224,6 @@ class Completion {
 
   void print_results(const CrownJob& job, const std::vector<CompletedTooth>& candidates) const {
     for (std::size_t i = 0; i < candidates.size(); ++i) print_summary(words_, candidates[i], job.teeth[i].string());
-    if (job.fdi_from_name) fmt::print(words_, "  tooth number {} taken from the file's name\n", *job.fdi);
   }
 
   int say(const Error& error, const CrownJob& job, const std::string& where_all_are) const {
@@ -273,10 +274,13 @@ void add_file_options(CLI::App& complete, CompleteCommand& command) {
       ->check(CLI::IsMember({"stl", "ply", "obj", "off", "vtp", "vtk"}, CLI::ignore_case));
   complete.add_option("--output-format", files.output_format, "Format of teeth in a folder or on standard output")
       ->check(CLI::IsMember({"ply", "stl", "obj", "glb"}))
+      ->each([&files](const std::string&) { files.output_format_given = true; })
       ->capture_default_str();
   complete.add_flag("--as-float", command.as_float,
                     "Round the crown to float, which is all that STL and GLB can hold; the report says by how much");
-  complete.add_option("--fdi", files.fdi, "FDI number of the tooth, 11-48; without it the type is guessed");
+  complete.add_option(
+      "--fdi", files.fdi,
+      "FDI number of the tooth, 11-48; without it the one in the file's name, else the type is guessed");
   complete.add_option("--report", files.report,
                       "Write the report (JSON) to this file or folder, also if the crown is refused");
   complete.add_flag("--name-in-report", command.name_in_report,
@@ -310,7 +314,7 @@ void add_complete_command(CLI::App& app) {
   complete->add_option("--e", command->options.e, "Side of the lattice in mm, 0.2 to 2; new edges are about half of it")
       ->capture_default_str();
   complete->add_option("--cap", command->options.cap, "A cap that closes the crown's base: drop, keep")
-      ->transform(CLI::CheckedTransformer(cap_names))
+      ->transform(CLI::CheckedTransformer(cap_names, CLI::ignore_case))
       ->default_str("drop");
   complete
       ->add_option("--skirt", command->skirt,

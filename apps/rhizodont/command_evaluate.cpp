@@ -160,7 +160,7 @@ void require_safe_places(const EvaluateCommand& command, const std::vector<Evalu
     require_no_mesh_ending(*file, "a table or a plot");
     outputs.emplace_back(*file);
   }
-  require_separate_files(files_below(models_folder(command)), outputs);
+  require_separate_files(model_files(models_folder(command)), outputs);
   if (!command.calibrate.empty()) outputs.emplace_back(command.calibrate);
   require_safe_outputs(inputs, outputs);
 }

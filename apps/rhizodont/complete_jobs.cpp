@@ -3,6 +3,7 @@
 #include "complete_jobs.hpp"
 
 #include "output_checks.hpp"
+#include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/output_files.hpp"
@@ -13,6 +14,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <regex>
 #include <set>
 
 namespace rhizodont::command_line {
@@ -58,7 +60,7 @@ CrownJob job_of(const CompleteFiles& files, const std::string& crown, std::vecto
   job.teeth = names(files.output, "_tooth." + files.output_format, files.candidates);
   if (!files.report.empty()) job.reports = names(files.report, "_tooth.json", files.candidates);
   if (!files.confidence.empty()) job.confidence = names(files.confidence, "_confidence.ply", 1).front();
-  if (files.crowns.size() > 1) {
+  if (!files.fdi && crown != "-" && !is_stream(crown)) {  // /dev/fd/12 is no tooth
     job.fdi = fdi_in_name(crown);
     job.fdi_from_name = job.fdi.has_value();
   }
@@ -81,6 +83,28 @@ void require_counts(const CompleteFiles& files) {
                                  files.crowns.size()));
 }
 
+/// The runs of digits in a name, but for dates (2026-11-27, 27.11.2026, 2026_11), whose days and months look like
+/// teeth.
+std::vector<std::string> numbers_in(std::string name) {
+  static const std::string year = "(19|20)[0-9]{2}", month = "(0[1-9]|1[0-2])", day = "(0[1-9]|[12][0-9]|3[01])",
+                           gap = "[-_. ]", before = "(^|[^0-9])", after = "(?![0-9])";
+  static const std::regex year_first(before + year + gap + month + "(" + gap + day + ")?" + after),
+      year_last(before + "(" + day + gap + ")?" + month + gap + year + after), digits("[0-9]+");
+  for (const std::regex& date : {year_first, year_last}) name = std::regex_replace(name, date, "$1");
+  return {std::sregex_token_iterator(name.begin(), name.end(), digits), std::sregex_token_iterator()};
+}
+
+void require_name_of_tooth(const fs::path& tooth, const CompleteFiles& files) {
+  const fs::path name = name_with_format(tooth, files.output_format);
+  if (!name.has_extension())
+    throw UsageError(
+        fmt::format("{}: the name of a tooth ends in .ply, .stl, .obj or .glb; for a new folder write {}/.",
+                    name.string(), name.string()));
+  require_mesh_ending(name);
+  if (files.output_format_given)
+    require_ending(name, {"." + files.output_format}, "a tooth in the --output-format asked for");
+}
+
 }  // namespace
 
 fs::path name_with_format(const fs::path& place, const std::string& format) {
@@ -88,16 +112,11 @@ fs::path name_with_format(const fs::path& place, const std::string& format) {
 }
 
 std::optional<int> fdi_in_name(const fs::path& file) {
-  const std::string name = file.stem().string();
   std::set<int> found;
-  for (std::size_t begin = 0; begin < name.size();) {
-    std::size_t end = begin;
-    while (end < name.size() && name[end] >= '0' && name[end] <= '9') ++end;
-    if (end - begin == 2) {
-      const int quadrant = name[begin] - '0', place = name[begin + 1] - '0';
-      if (quadrant >= 1 && quadrant <= 4 && place >= 1 && place <= 8) found.insert(10 * quadrant + place);
-    }
-    begin = std::max(end, begin + 1);
+  for (const std::string& number : numbers_in(stem_of(file.string()))) {
+    if (number.size() != 2) continue;
+    const int quadrant = number[0] - '0', place = number[1] - '0';
+    if (quadrant >= 1 && quadrant <= 4 && place >= 1 && place <= 8) found.insert(10 * quadrant + place);
   }
   return found.size() == 1 ? std::optional(*found.begin()) : std::nullopt;
 }
@@ -105,11 +124,11 @@ std::optional<int> fdi_in_name(const fs::path& file) {
 std::vector<CrownJob> plan_complete(const CompleteFiles& files, const fs::path& models) {
   require_counts(files);
   std::vector<CrownJob> jobs;
-  std::vector<fs::path> inputs = files_below(models), outputs, made_up;
+  std::vector<fs::path> inputs = model_files(models), outputs, made_up;
   for (const std::string& crown : files.crowns) {
     const CrownJob& job = jobs.emplace_back(job_of(files, crown, made_up));
     inputs.emplace_back(crown == "-" ? "/dev/stdin" : crown);  // the shell may have opened a file there
-    for (const fs::path& tooth : job.teeth) require_mesh_ending(name_with_format(tooth, files.output_format));
+    for (const fs::path& tooth : job.teeth) require_name_of_tooth(tooth, files);
     for (const fs::path& report : job.reports) require_no_mesh_ending(report, "a report");
     if (!job.confidence.empty()) require_ending(job.confidence, {".ply"}, "a crown with confidences");
     outputs.insert(outputs.end(), job.teeth.begin(), job.teeth.end());

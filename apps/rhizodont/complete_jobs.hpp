@@ -16,6 +16,7 @@ struct CompleteFiles {
   std::string report;                 ///< a file or, where `output` is one, a folder; may be empty
   std::string confidence;             ///< as `report`
   std::string output_format = "ply";  ///< of teeth in a folder, and where a name has no ending
+  bool output_format_given = false;   ///< then a name must not say another
   std::optional<int> fdi;
   int candidates = 1;
   bool overwrite = false;
@@ -27,7 +28,7 @@ struct CrownJob {
   std::vector<std::filesystem::path> teeth;    ///< one per candidate
   std::vector<std::filesystem::path> reports;  ///< as many, or none
   std::filesystem::path confidence;            ///< may be empty
-  std::optional<int> fdi;
+  std::optional<int> fdi;                      ///< as given, else from the file's name
   bool fdi_from_name = false;
 
   std::string shown_crown() const { return crown == "-" ? "standard input" : crown; }
@@ -41,7 +42,8 @@ std::vector<CrownJob> plan_complete(const CompleteFiles& files, const std::files
 /// The name that says in which format a mesh goes there: the place's own, or one with the ending of `format`.
 std::filesystem::path name_with_format(const std::filesystem::path& place, const std::string& format);
 
-/// The FDI number of a permanent tooth that a file's name holds, if it holds just one.
+/// The FDI number of a permanent tooth that a file's name holds, if it holds just one: two digits with none beside them
+/// that are no part of a date.
 std::optional<int> fdi_in_name(const std::filesystem::path& file);
 
 }  // namespace rhizodont::command_line

@@ -37,12 +37,18 @@ std::string decimal_number(std::string& text) {
                      text.find(',') != std::string::npos ? ": write a point, not a comma" : "");
 }
 
+/// An empty word is a slip: a variable of the shell that was not set.
+std::string some_word(const std::string& text) {
+  return text.empty() ? "it needs a word, and an empty one was given" : "";
+}
+
 }  // namespace
 
 void take_decimal_numbers(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
     const std::string type = option->get_type_name();
     if (type.starts_with("INT") || type.starts_with("UINT")) option->transform(CLI::Validator(decimal_integer, ""));
+    if (type.starts_with("TEXT")) option->check(CLI::Validator(some_word, ""));
     if (type.starts_with("FLOAT")) option->transform(CLI::Validator(decimal_number, ""));
   }
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) take_decimal_numbers(*command);
@@ -60,6 +66,9 @@ double millimetres_per_unit(const std::string& name) {
   auto unit = units.find(word);
   if (unit == units.end() && word.size() > 3 && word.ends_with('s')) unit = units.find(word.substr(0, word.size() - 1));
   if (unit != units.end()) return unit->second;
+  double number = 0;
+  if (read_decimal(name, number))
+    throw UsageError(fmt::format("--unit takes a name, not the number {}: mm, cm, m, um or in (inches).", name));
   throw UsageError(fmt::format("--unit: '{}' is none of mm, cm, m, um and in (inches).", name));
 }
 

@@ -167,6 +167,9 @@ class CompletionModels {
   std::unique_ptr<Content> content_;
 };
 
+/// The files that `CompletionModels::load` reads from a folder. Throws InputError if one that it needs is not there.
+std::vector<std::filesystem::path> model_files(const std::filesystem::path& folder);
+
 /// The folder with the shipped models: $RHIZODONT_MODELS, else where they were installed, else the source tree's.
 std::filesystem::path default_models_folder();
 

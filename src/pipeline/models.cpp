@@ -3,6 +3,8 @@
 
 #include "pipeline/models.hpp"
 
+#include "rhizodont/error.hpp"
+
 #include <dlfcn.h>
 
 #include <cstdlib>
@@ -14,13 +16,35 @@ CompletionModels::CompletionModels(CompletionModels&&) noexcept = default;
 CompletionModels& CompletionModels::operator=(CompletionModels&&) noexcept = default;
 CompletionModels::~CompletionModels() = default;
 
+namespace {
+
+constexpr const char* completion_file = "completion.safetensors";
+constexpr const char* atlas_file = "atlas.safetensors";
+constexpr const char* skirt_file = "skirt.safetensors";
+constexpr const char* likeness_file = "likeness.safetensors";
+
+}  // namespace
+
+std::vector<std::filesystem::path> model_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  for (const char* needed : {completion_file, atlas_file}) {
+    files.push_back(folder / needed);
+    if (!std::filesystem::exists(files.back()))
+      throw InputError("There is no " + std::string(needed) + " in " + folder.string() +
+                       ", where the models should be.");
+  }
+  for (const char* optional : {skirt_file, likeness_file})
+    if (std::filesystem::exists(folder / optional)) files.push_back(folder / optional);
+  return files;
+}
+
 CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
-  auto content = std::make_unique<Content>(Content{load_atlas(folder / "atlas.safetensors"),
-                                                   CompletionNetwork::load(folder / "completion.safetensors"),
-                                                   std::nullopt, std::nullopt});
-  if (const auto skirt = folder / "skirt.safetensors"; std::filesystem::exists(skirt))
+  model_files(folder);
+  auto content = std::make_unique<Content>(Content{
+      load_atlas(folder / atlas_file), CompletionNetwork::load(folder / completion_file), std::nullopt, std::nullopt});
+  if (const auto skirt = folder / skirt_file; std::filesystem::exists(skirt))
     content->skirt = SurfaceNetwork::load(skirt);
-  if (const auto likeness = folder / "likeness.safetensors"; std::filesystem::exists(likeness))
+  if (const auto likeness = folder / likeness_file; std::filesystem::exists(likeness))
     content->likeness = load_likeness(likeness);
   return CompletionModels(std::move(content));
 }
@@ -35,7 +59,7 @@ std::filesystem::path installed_models() {
   const std::filesystem::path folder = std::filesystem::weakly_canonical(info.dli_fname).parent_path();
   for (const char* up : {"..", "../.."}) {
     const std::filesystem::path models = folder / up / "share/rhizodont/models";
-    if (std::filesystem::exists(models / "completion.safetensors")) return models.lexically_normal();
+    if (std::filesystem::exists(models / completion_file)) return models.lexically_normal();
   }
   return {};
 }

@@ -87,7 +87,7 @@ TEST_F(CommandLine, SeveralCrownsGoToAFolder) {
   EXPECT_EQ(outcome.code, 3) << outcome.error;
   EXPECT_NE(outcome.error.find("bad_11.stl"), std::string::npos) << outcome.error;
   EXPECT_NE(outcome.out.find("3 of 4 crowns completed"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("tooth number 34 taken from the file's name"), std::string::npos) << outcome.out;
+  EXPECT_NE(outcome.out.find("Tooth 34, taken from the file's name."), std::string::npos) << outcome.out;
   for (const char* name : {"crown_34", "crown_36", "somebody"}) {
     EXPECT_TRUE(fs::exists(at("teeth/today/" + std::string(name) + "_tooth.ply"))) << name;
     EXPECT_TRUE(fs::exists(at("teeth/reports/" + std::string(name) + "_tooth.json"))) << name;
@@ -104,6 +104,59 @@ TEST_F(CommandLine, SeveralCrownsGoToAFolder) {
   expect_error(complete("crown_34.ply ./crown_34.ply -o more"), 2, "the same file");
   expect_done(complete("crown_36.stl --fdi 36 -o teeth/today --overwrite --output-format stl --quiet"));
   EXPECT_TRUE(fs::exists(at("teeth/today/crown_36_tooth.stl")));
+}
+
+TEST_F(CommandLine, SlipsInNamesAndWordsAreSaid) {
+  expect_error(complete("crown_36.stl -o new"), 2, "for a new folder write new/.");
+  expect_error(complete("crown_36.stl -o -  --report -"), 2, "Standard output takes one result only");
+  expect_error(complete("crown_36.stl -o tooth.stl --output-format obj"), 2, "ends in .obj");
+  for (const char* option : {"-o ''", "-o tooth.ply --report ''", "-o tooth.ply --models ''"})
+    expect_error(complete(std::string("crown_36.stl ") + option), 2, "an empty one was given");
+  expect_error(complete("crown_36.stl -o tooth.ply --unit 10"), 2, "--unit takes a name, not the number 10");
+  expect_error(complete("no.stl -o tooth.ply --skirt AUTO --cap Drop"), 3, "no.stl");
+}
+
+TEST_F(CommandLine, TheNumberInTheNameOfASingleCrownIsBelieved) {
+  struct Case {
+    const char* name;
+    int fdi;  // 0: guessed
+  };
+  for (const auto& [name, fdi] : {Case{"crown_36.stl", 36},
+                                  {"2026-11-27_36.STL", 36},
+                                  {"11_2026_36.stl", 36},
+                                  {"scan_2026-11-12.stl", 0},
+                                  {"27.11.2026.stl", 0},
+                                  {"patient11_36.stl", 0},
+                                  {"crown_136.stl", 0},
+                                  {"tooth_55.stl", 0},
+                                  {"crown.stl", 0}}) {
+    fs::copy_file(fs::path(RHIZODONT_SOURCE_DIR) / "samples/crown_36.stl", at(name),
+                  fs::copy_options::overwrite_existing);
+    const Outcome outcome = run(complete(std::string(name) + " -o tooth.ply --report r.json"));
+    ASSERT_EQ(outcome.code, 0) << name << outcome.error;
+    EXPECT_EQ(report("r.json")["fdi"]["guessed"].get<bool>(), fdi == 0) << name;
+    if (fdi != 0) {
+      EXPECT_EQ(report("r.json")["fdi"]["number"], fdi) << name;
+    }
+    EXPECT_EQ(outcome.out.find("note: Tooth 36, taken from the file's name.") != std::string::npos, fdi != 0) << name;
+  }
+  expect_done(complete("crown_36.stl --fdi 37 -o tooth.ply --report r.json"));
+  EXPECT_EQ(report("r.json")["fdi"]["number"], 37) << "what the user says goes before the name";
+  expect_done(complete("open_12 -o tooth.ply --report r.json"), "ln -s /dev/fd/9 open_12; exec 9< crown_36.stl;");
+  EXPECT_TRUE(report("r.json")["fdi"]["guessed"].get<bool>()) << "numbers of open files are no tooth's";
+}
+
+TEST_F(CommandLine, OfAFolderOfModelsOnlyTheModelsAreGuarded) {
+  fs::create_directory(at("models"));
+  expect_error(complete("crown_36.stl -o models/tooth.ply --models models"), 3, "no completion.safetensors in models");
+  for (const auto& model : fs::directory_iterator(fs::path(RHIZODONT_SOURCE_DIR) / "models"))
+    fs::copy(model.path(), at("models") / model.path().filename());
+  folder.write("models/tooth.ply", "an older tooth");
+  expect_done(complete("crown_36.stl -o models/tooth.ply --models models"));
+  const std::string before = read_all(at("models/skirt.safetensors"));
+  expect_error(complete("crown_36.stl -o tooth.ply --report models/skirt.safetensors --models models"), 2,
+               "which is read");
+  EXPECT_TRUE(read_all(at("models/skirt.safetensors")) == before);
 }
 
 TEST_F(CommandLine, StandardInputAndOutput) {
