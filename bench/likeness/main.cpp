@@ -1,19 +1,26 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Makes the statistics by which crowns are judged, and says how often the judgement is wrong.
-#include "atlas/crown_crop.hpp"
+// Trains the network by which crowns are judged, and says how often the judgement is wrong.
+#include "atlas/likeness_samples.hpp"
 #include "atlas/tooth_family.hpp"
 #include "atlas/unlike_crowns.hpp"
 #include "completion/likeness.hpp"
+#include "learning/train_classifier.hpp"
 #include "pipeline/crown_likeness.hpp"
+#include "pipeline/models.hpp"
+#include "pipeline/take_crown.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
 
 #include <fmt/core.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -22,42 +29,87 @@ namespace {
 
 const std::filesystem::path models = std::filesystem::path(RHIZODONT_SOURCE_DIR) / "models";
 
-/// Seeds from here on had no part in the statistics.
-constexpr std::uint64_t table_seed = std::uint64_t{1} << 41;
+/// Seeds of crowns that bounds come from, and of those in the table: neither had a part in the training.
+constexpr std::uint64_t bounds_seed = std::uint64_t{1} << 40, table_seed = std::uint64_t{1} << 41;
 
-/// A crown as scans give it: mostly near the junction, some with notches at the contacts or remains of gum.
 TriangleMesh generated_crown(const ToothFamilies& families, int type, std::uint64_t seed, RandomStream& random) {
-  constexpr double paper_share = 0.02, gap_probability = 0.3, skirt_probability = 0.2, skirt_mm = 0.9;
-  const SyntheticTooth tooth = generate_tooth(families, type, seed);
-  TriangleMesh crown = draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh;
-  if (random.chance(skirt_probability)) add_skirt_remains(crown, skirt_mm, random);
-  return crown;
+  return draw_scanned_crown(generate_tooth(families, type, seed), random);
 }
 
-void fit(const std::filesystem::path& data, const std::filesystem::path& file, int per_type) {
-  const ToothFamilies families = load_tooth_families(data);
-  const Atlas atlas = load_atlas(models / "atlas.safetensors");
-  std::vector<LikenessSample> samples;
+LabelledPanoramas training_panoramas(const ToothFamilies& families, int per_type) {
+  std::vector<std::vector<LikenessSample>> of_tooth(static_cast<std::size_t>(per_type) * tooth_type_count);
+  tbb::parallel_for(std::size_t{0}, of_tooth.size(), [&](std::size_t i) {
+    try {
+      of_tooth[i] = make_likeness_samples(families, static_cast<int>(i % tooth_type_count), i / tooth_type_count);
+    } catch (const NoResultError&) {  // no draw of this seed made a tooth
+    }
+  });
+  LabelledPanoramas all{CrownPanorama::channels, CrownPanorama::rows, CrownPanorama::columns, {}, {}};
+  for (const std::vector<LikenessSample>& samples : of_tooth)
+    for (const LikenessSample& sample : samples) {
+      all.values.insert(all.values.end(), sample.panorama.values.begin(), sample.panorama.values.end());
+      all.labels.push_back(static_cast<std::int32_t>(sample.label));
+    }
+  return all;
+}
+
+/// Bounds by held-out crowns, of which every third is low, and by what is no crown.
+LikenessBounds bounds_of(const ToothFamilies& families, const ToothClassifier& classifier, int per_type) {
+  std::vector<Likeness> crowns, strangers;
+  std::vector<std::size_t> teeth;
   for (int i = 0; i < per_type; ++i)
     for (int type = 0; type < tooth_type_count; ++type) {
-      const auto seed = static_cast<std::uint64_t>(i);
+      const std::uint64_t seed = bounds_seed + static_cast<std::uint64_t>(i);
       RandomStream random(seed, 700 + static_cast<std::uint64_t>(type));
-      const TriangleMesh crown = generated_crown(families, type, seed, random);
-      samples.push_back({type, crown_traits(crown, atlas, 2 * static_cast<std::size_t>(type))});
+      try {
+        const SyntheticTooth tooth = generate_tooth(families, type, seed);
+        const TriangleMesh crown = i % 3 == 0 ? draw_low_crown(tooth, random) : draw_scanned_crown(tooth, random);
+        crowns.push_back(likeness(crown, classifier));
+        teeth.push_back(2 * static_cast<std::size_t>(type));
+        const auto kind = static_cast<UnlikeKind>((i + type) % unlike_kind_count);
+        strangers.push_back(likeness(unlike_crown(draw_scanned_crown(tooth, random), kind, random), classifier));
+      } catch (const Error&) {  // a cut that leaves nothing
+      }
     }
-  LikenessModel model = fit_likeness(samples);
-  model.metadata["content"] =
-      "Statistics of generated crowns by which a crown's tooth is told (src/completion/likeness.hpp)";
-  model.metadata["crowns"] = std::to_string(samples.size());
-  model.metadata["attribution"] =
-      "derived from \"Permanent Teeth\", University of Dundee School of Dentistry (E. McDougall, A. Mason, M. "
-      "Roughley), "
-      "CC BY 4.0, and crown models of Chen Y. et al., 2023 (MIT)";
-  save_likeness(model, file);
-  fmt::print("{}: {} crowns, weights {:.2f}, {:.2f}, bounds {:.2f}, {:.2f}, {:.2f}, {:.2f}\n", file.string(),
-             samples.size(), model.type_weight, model.side_weight, model.type_bound, model.side_bound,
-             model.strange_bound, model.refused_bound);
+  return likeness_bounds(crowns, teeth, strangers);
 }
+
+/// Sets the bounds of a file of weights anew.
+void set_bounds(const std::filesystem::path& data, const std::filesystem::path& file, int per_type) {
+  TensorFile weights = read_safetensors(file);
+  const LikenessBounds bounds = bounds_of(load_tooth_families(data), ToothClassifier(weights), per_type);
+  note_bounds(bounds, weights);
+  write_safetensors(file, weights);
+  fmt::print("{}: bounds {:.2f}, {:.2f}, {:.2f}\n", file.string(), bounds.other_tooth, bounds.unlike, bounds.refused);
+}
+
+void fit(const std::filesystem::path& data, const std::filesystem::path& file, int per_type, int steps) {
+  const ToothFamilies families = load_tooth_families(data);
+  const LabelledPanoramas panoramas = training_panoramas(families, per_type);
+  fmt::print("{} panoramas\n", panoramas.labels.size());
+  ClassifierTrainingOptions options;
+  options.steps = steps;
+  options.log = [](const std::string& line) {
+    fmt::print("{}\n", line);
+    std::fflush(stdout);
+  };
+  TensorFile weights = train_classifier(panoramas, options);
+  const LikenessBounds bounds = bounds_of(families, ToothClassifier(weights), std::max(60, per_type / 4));
+  note_bounds(bounds, weights);
+  weights.metadata["content"] = "A network that tells which tooth a crown is (src/completion/tooth_classifier.hpp)";
+  weights.metadata["training.panoramas"] = std::to_string(panoramas.labels.size());
+  weights.metadata["training.steps"] = std::to_string(steps);
+  weights.metadata["attribution"] =
+      "derived from \"Permanent Teeth\", University of Dundee School of Dentistry (E. McDougall, A. Mason, M. "
+      "Roughley), CC BY 4.0, and crown models of Chen Y. et al., 2023 (MIT)";
+  write_safetensors(file, weights);
+  fmt::print("{}: bounds {:.2f}, {:.2f}, {:.2f}\n", file.string(), bounds.other_tooth, bounds.unlike, bounds.refused);
+}
+
+constexpr const char* tally_head =
+    "| crowns | how many | said to be another | hardly like it | refused | together |\n|---|---|---|---|---|---|\n";
+constexpr const char* guesses_head =
+    "\n| guessed | how many | tooth | type | among the first three |\n|---|---|---|---|---|\n";
 
 /// What judgements came to.
 struct Tally {
@@ -132,17 +184,53 @@ void table(const std::filesystem::path& data, int per_type) {
       const auto kind = static_cast<std::size_t>((i + type) % unlike_kind_count);
       unlike[kind].add(unlike_crown(crown, static_cast<UnlikeKind>(kind), random), fdi, atlas, model);
     }
-  fmt::print(
-      "| crowns | how many | said to be another | hardly like it | refused | together |\n|---|---|---|---|---|---|\n");
+  fmt::print("{}", tally_head);
   genuine.print("right number (false alarms)");
   side.print("wrong side");
   jaw.print("wrong jaw");
   wrong_class.print("wrong class");
   for (std::size_t k = 0; k < unlike.size(); ++k) unlike[k].print(name_of(static_cast<UnlikeKind>(k)));
-  fmt::print("\n| guessed | how many | tooth | type | among the first three |\n|---|---|---|---|---|\n");
+  fmt::print("{}", guesses_head);
   for (int type = 0; type < tooth_type_count; ++type)
     guesses[static_cast<std::size_t>(type)].print(std::to_string(fdi_of_type(type, false)));
   all.print("all");
+}
+
+/// Crowns in files whose names end in their number (crown_36.ply), as `complete --repair --skirt auto` takes them.
+void judge_files(const std::vector<std::filesystem::path>& files) {
+  const CompletionModels loaded = CompletionModels::load(models);
+  const CompletionModels::Content& content = loaded.content();
+  Tally genuine;
+  Guesses guesses;
+  int untaken = 0;
+  for (const std::filesystem::path& file : files) {
+    CompleteOptions options;
+    options.repair = true;
+    options.skirt = 0.5;
+    const std::string name = file.stem().string();
+    options.fdi = std::atoi(name.substr(name.size() < 2 ? 0 : name.size() - 2).c_str());
+    CompletionRecord record;
+    try {
+      const TriangleMesh crown = take_crown(load_mesh(file).mesh, content.atlas, content.skirt, options, record).mesh;
+      genuine.add(crown, *options.fdi, content.atlas, *content.likeness);
+      guesses.add(crown, *options.fdi, content.atlas, *content.likeness);
+      const Likeness judged = likeness(crown, content.likeness->classifier);
+      const auto said =
+          static_cast<std::size_t>(2 * tooth_type_of_fdi(*options.fdi) + (is_right_side(*options.fdi) ? 1 : 0));
+      const LikenessBounds& bounds = content.likeness->bounds;
+      if (judged.log_unlike > bounds.unlike || judged.lead_over(said) > bounds.other_tooth)
+        fmt::print("warned of: {}: ln unlike {:.1f} (bounds {:.1f}, {:.1f}), ln another {:.1f} (bound {:.1f})\n",
+                   file.string(), judged.log_unlike, bounds.unlike, bounds.refused, judged.lead_over(said),
+                   bounds.other_tooth);
+    } catch (const Error& error) {
+      fmt::print("not taken: {}: {}\n", file.string(), error.what());
+      ++untaken;
+    }
+  }
+  fmt::print("{} files, {} not taken before they were judged\n{}", files.size(), untaken, tally_head);
+  genuine.print("right number (false alarms)");
+  fmt::print("{}", guesses_head);
+  guesses.print("all");
 }
 
 }  // namespace
@@ -150,17 +238,25 @@ void table(const std::filesystem::path& data, int per_type) {
 
 int main(int argc, char** argv) {
   const std::string task = argc > 1 ? argv[1] : "";
-  if (argc < 3 || (task != "fit" && task != "table") || (task == "fit" && argc < 4)) {
+  const auto number = [&](int at, int otherwise) { return argc > at ? std::atoi(argv[at]) : otherwise; };
+  if (argc < 3 || (task != "fit" && task != "bounds" && task != "table" && task != "judge") ||
+      ((task == "fit" || task == "bounds") && argc < 4)) {
     fmt::print(stderr,
-               "usage: bench_likeness fit DATA FILE [CROWNS_PER_TYPE=150] | bench_likeness table DATA "
-               "[CROWNS_PER_TYPE=32]\n");
+               "usage: bench_likeness fit DATA FILE [TEETH_PER_TYPE=500] [STEPS=4000]\n"
+               "       bench_likeness bounds DATA FILE [TEETH_PER_TYPE=150]\n"
+               "       bench_likeness table DATA [CROWNS_PER_TYPE=32]\n"
+               "       bench_likeness judge CROWN_FDI.ply...\n");
     return 2;
   }
   try {
     if (task == "fit")
-      rhizodont::fit(argv[2], argv[3], argc > 4 ? std::atoi(argv[4]) : 150);
+      rhizodont::fit(argv[2], argv[3], number(4, 500), number(5, 4000));
+    else if (task == "bounds")
+      rhizodont::set_bounds(argv[2], argv[3], number(4, 150));
+    else if (task == "table")
+      rhizodont::table(argv[2], number(3, 32));
     else
-      rhizodont::table(argv[2], argc > 3 ? std::atoi(argv[3]) : 32);
+      rhizodont::judge_files({argv + 2, argv + argc});
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

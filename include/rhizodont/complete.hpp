@@ -73,7 +73,7 @@ struct CrownLikeness {
   std::array<ToothLikeness, 2> next;  ///< the two most probable of the others
   double seen = 0;                    ///< share of that tooth's mean crown that the crown covers, 0..1
   double explained = 0;               ///< share of the crown's surface that lies near that mean crown, 0..1
-  double strangeness = 0;             ///< 1: as far from generated crowns as the bound from which it is called unlike
+  double unlike_probability = 0;      ///< 0..1: of this being no crown or little of one, if it is as frequent as crowns
 };
 
 /// Where a root comes from.

@@ -1,105 +1,85 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Quadratic discriminant analysis: R. A. Fisher, "The use of multiple measurements in taxonomic problems", 1936;
-// C. R. Rao, "The utilization of multiple measurements in problems of biological classification", 1948. Each tooth is
-// held against what crowns look like that are not that tooth, for each sees a crown in a pose of its own. Tails: K. L.
-// Lange, R. J. A. Little, J. M. G. Taylor, "Robust statistical modeling using the t distribution", 1989.
+// Split conformal prediction: H. Papadopoulos, K. Proedrou, V. Vovk, A. Gammerman, "Inductive confidence machines for
+// regression", 2002.
 #include "completion/likeness.hpp"
 
-#include "completion/likeness_vector.hpp"
-
-#include <Eigen/Dense>
+#include "completion/crown_panorama.hpp"
+#include "completion/frame.hpp"
+#include "rhizodont/error.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
 
 namespace rhizodont {
-
-Eigen::VectorXd likeness_vector(const CrownTraits& traits, const TypeStatistics& type) {
-  constexpr double least_mm = 1e-3;
-  Eigen::VectorXd offsets(static_cast<Eigen::Index>(CrownTraits::place_count));
-  for (std::size_t i = 0; i < CrownTraits::place_count; ++i)
-    offsets[static_cast<Eigen::Index>(i)] = static_cast<double>(traits.offsets[i]);
-  offsets -= type.mean_offsets;
-  const Eigen::VectorXd along = type.modes.transpose() * offsets;
-  const double rest = (offsets - type.modes * along).norm() / std::sqrt(static_cast<double>(offsets.size()));
-  constexpr auto agreements = static_cast<Eigen::Index>(CrownTraits::agreement_count);
-  Eigen::VectorXd vector(agreements + along.size() + 1);
-  for (Eigen::Index i = 0; i < agreements; ++i)
-    vector[i] = static_cast<double>(traits.agreement[static_cast<std::size_t>(i)]);
-  vector.segment(agreements, along.size()) = along;
-  vector[vector.size() - 1] = std::log(rest + least_mm);
-  return vector;
-}
-
-Eigen::VectorXd standardised(const Eigen::VectorXd& vector, const TypeStatistics& type) {
-  constexpr double outermost = 4;
-  // The root's columns hold the inverse covariance: root^T root. Deviations are those that the traits have alone.
-  const Eigen::MatrixXd factor =
-      type.own.root.triangularView<Eigen::Lower>().solve(Eigen::MatrixXd::Identity(vector.size(), vector.size()));
-  const Eigen::VectorXd deviation = factor.rowwise().norm();
-  return (vector - type.own.mean).cwiseQuotient(deviation).cwiseMax(-outermost).cwiseMin(outermost);
-}
-
-double CrownDistribution::squared_distance(const Eigen::VectorXd& x) const {
-  return (root.triangularView<Eigen::Lower>() * (x - mean)).squaredNorm();
-}
-
-double CrownDistribution::log_density(const Eigen::VectorXd& x) const {
-  constexpr double freedom = 10;
-  const double tail = 0.5 * (freedom + static_cast<double>(x.size())) * std::log1p(squared_distance(x) / freedom);
-  return root.diagonal().array().log().sum() - tail;
-}
-
 namespace {
 
-constexpr double absent = 50;  // ln of how much less probable a tooth is whose traits were not asked for
+/// A share of the values is at most this: of n values, the ceil(share (n + 1))-th.
+double bound_for(std::vector<double> values, double share) {
+  const auto n = static_cast<double>(values.size());
+  const auto place = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(share * (n + 1)), 1.0, n)) - 1;
+  std::nth_element(values.begin(), values.begin() + place, values.end());
+  return values[static_cast<std::size_t>(place)];
+}
 
-/// What is known of one type: densities and sides of the traits that were given.
-struct TypeEvidence {
-  std::array<std::optional<Eigen::VectorXd>, 2> vector;  // left, right
-  double own = -std::numeric_limits<double>::infinity();
-  double left_over_right = 0;
-};
-
-double log_share(double log_odds) { return -std::log1p(std::exp(-std::clamp(log_odds, -absent, absent))); }
+constexpr const char* bounds_name = "bounds";
 
 }  // namespace
 
-Likeness likeness(const std::vector<ToothTraits>& traits, const LikenessModel& model) {
+LikenessModel load_likeness(const std::filesystem::path& path) {
+  const TensorFile file = read_safetensors(path);
+  const auto found = file.tensors.find(bounds_name);
+  if (found == file.tensors.end() || found->second.type == TensorType::int32)
+    throw InputError("The weights that tell teeth apart come without bounds.");
+  const std::vector<float> values = load_floats(found->second);
+  const bool good = values.size() == 3 &&
+                    std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); }) &&
+                    values[2] >= values[1];
+  if (!good) throw InputError("The bounds of the weights that tell teeth apart are damaged.");
+  return {ToothClassifier(file), {double{values[0]}, double{values[1]}, double{values[2]}}, file.metadata};
+}
+
+void note_bounds(const LikenessBounds& bounds, TensorFile& weights) {
+  const std::vector<float> values{static_cast<float>(bounds.other_tooth), static_cast<float>(bounds.unlike),
+                                  static_cast<float>(bounds.refused)};
+  weights.tensors[bounds_name] = store_floats(values, {3});
+}
+
+double Likeness::lead_over(std::size_t tooth) const {
+  return *std::max_element(log_probability.begin(), log_probability.end()) - log_probability.at(tooth);
+}
+
+Likeness likeness(const TriangleMesh& open_crown, const ToothClassifier& classifier) {
+  const Eigen::Vector3d axis = growth_axis(open_crown);
+  const ToothProbabilities all = classifier(crown_panorama(open_crown, axis, panorama_centre(open_crown, axis)));
+  double any_tooth = 0;
+  for (const double p : all.log_tooth) any_tooth += std::exp(p);
+  any_tooth = std::log(std::max(any_tooth, 1e-300));
   Likeness result;
-  std::array<TypeEvidence, tooth_type_count> types;
-  for (const ToothTraits& tooth : traits) {
-    const TypeStatistics& type = model.types[tooth.tooth / 2];
-    TypeEvidence& evidence = types[tooth.tooth / 2];
-    const Eigen::VectorXd x = likeness_vector(tooth.traits, type);
-    result.strangeness.push_back(type.own.squared_distance(x) / static_cast<double>(x.size()));
-    evidence.own = std::max(evidence.own, model.type_weight * (type.own.log_density(x) - type.others.log_density(x)));
-    evidence.vector[tooth.tooth % 2] = standardised(x, type);
-  }
-  double most = -std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < types.size(); ++t) {
-    TypeEvidence& evidence = types[t];
-    most = std::max(most, evidence.own);
-    const auto& [left, right] = evidence.vector;
-    evidence.left_over_right = left && right ? model.side_weight * model.types[t].side.dot(*left - *right)
-                               : left        ? absent
-                                             : -absent;
-  }
-  double sum = 0;
-  for (const ToothTraits& tooth : traits) {
-    const TypeEvidence& evidence = types[tooth.tooth / 2];
-    const double over_other_side = tooth.tooth % 2 == 0 ? evidence.left_over_right : -evidence.left_over_right;
-    result.type_lead.push_back(most - evidence.own);
-    result.side_lead.push_back(-over_other_side);
-    result.probability.push_back(std::exp(evidence.own - most + log_share(over_other_side)));
-    sum += result.probability.back();
-  }
-  for (double& p : result.probability) p /= sum;
+  for (std::size_t t = 0; t < tooth_count; ++t) result.log_probability[t] = all.log_tooth[t] - any_tooth;
+  result.log_unlike = all.log_unlike - any_tooth;
   return result;
+}
+
+LikenessBounds likeness_bounds(const std::vector<Likeness>& crowns, const std::vector<std::size_t>& teeth,
+                               const std::vector<Likeness>& strangers) {
+  constexpr std::size_t fewest = 500, fewest_strangers = 100;
+  constexpr double passing = 0.995, strangers_missed = 0.02, sides_missed = 1.0 / 6, strangers_not_refused = 0.5;
+  if (crowns.size() != teeth.size() || crowns.size() < fewest || strangers.size() < fewest_strangers)
+    throw UsageError("Bounds need at least 500 crowns, each with its tooth, and 100 strangers.");
+  std::vector<double> lead, wrong_side, unlike, strange;
+  for (std::size_t i = 0; i < crowns.size(); ++i) {
+    lead.push_back(crowns[i].lead_over(teeth[i]));
+    wrong_side.push_back(crowns[i].lead_over(teeth[i] ^ 1U));
+    unlike.push_back(crowns[i].log_unlike);
+  }
+  for (const Likeness& stranger : strangers) strange.push_back(stranger.log_unlike);
+  LikenessBounds bounds;
+  bounds.other_tooth = std::max(bound_for(lead, passing), bound_for(wrong_side, sides_missed));
+  bounds.unlike = std::max(bound_for(unlike, passing), bound_for(strange, strangers_missed));
+  bounds.refused = std::max(bounds.unlike, bound_for(strange, strangers_not_refused));
+  return bounds;
 }
 
 }  // namespace rhizodont

@@ -7,7 +7,7 @@
 // similarity from pairs: S. Umeyama, "Least-squares estimation of transformation parameters between two point
 // patterns", 1991.
 #include "completion/frame.hpp"
-#include "completion/likely_teeth.hpp"
+#include "completion/lay_teeth.hpp"
 #include "completion/oriented_clouds.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
@@ -360,8 +360,8 @@ RigidFit fit_mean_crown(const OrientedPoints& points, const MeanCrown& mean, boo
   return rigid_fit({upright, found});
 }
 
-std::vector<ToothFit> lay_likely_teeth(const TriangleMesh& open_crown, const Atlas& atlas, std::size_t count,
-                                       std::optional<std::size_t> also) {
+std::vector<RigidFit> lay_teeth(const TriangleMesh& open_crown, const Atlas& atlas,
+                                const std::vector<std::size_t>& teeth) {
   constexpr Eigen::Index few = 96, crown_points = 160, mean_points = 256;
   constexpr int start_angles = 24, first_iterations = 4, last_iterations = 6;
   const RegistrationOptions options;
@@ -369,48 +369,35 @@ std::vector<ToothFit> lay_likely_teeth(const TriangleMesh& open_crown, const Atl
   const OrientedPoints points = surface_points(open_crown);
   const Eigen::Vector3d axis = growth_axis(open_crown);
   const Point centre = area_centroid(open_crown);
-  for (const MeanCrown& mean : atlas.types) check_mean(mean);
+  for (const std::size_t tooth : teeth) check_mean(atlas.types.at(tooth / 2));
   const std::vector<Eigen::Matrix3d> rotations = rotations_about_z(start_angles);
 
-  std::vector<ToothFit> fits(2 * tooth_type_count);
-  std::vector<Laid> laid(fits.size());
+  std::vector<RigidFit> fits(teeth.size());
   tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t i) {
-    laid[i].upright = upright_frame(axis, centre, i % 2 == 1);
-    const OrientedCloud crown = thinned(upright_cloud(points, laid[i].upright), few);
-    const OrientedCloud mean = thinned(cloud_of(atlas.types[i / 2].crown, laid[i].upright.scale), few);
-    const CloudFeatures goal = features_of(mean, options.normal_weight_mm);
-    const auto distance = [&](const Similarity& at) {
-      return two_way_distance(features_of(moved(crown, at), options.normal_weight_mm), goal, trim);
+    Laid laid;
+    laid.upright = upright_frame(axis, centre, teeth[i] % 2 == 1);
+    const OrientedCloud crown = upright_cloud(points, laid.upright);
+    const OrientedCloud mean = cloud_of(atlas.types[teeth[i] / 2].crown, laid.upright.scale);
+    const auto distance_to = [&](const OrientedCloud& from, const CloudFeatures& goal, const Similarity& at) {
+      return two_way_distance(features_of(moved(from, at), options.normal_weight_mm), goal, trim);
     };
+    const OrientedCloud rough_crown = thinned(crown, few), rough_mean = thinned(mean, few);
+    const CloudFeatures rough_goal = features_of(rough_mean, options.normal_weight_mm);
     std::vector<std::pair<double, Similarity>> starts;
     for (const Eigen::Matrix3d& rotation : rotations) {
-      const Similarity at = start_with(rotation, crown, mean);
-      starts.emplace_back(distance(at), at);
+      const Similarity at = start_with(rotation, rough_crown, rough_mean);
+      starts.emplace_back(distance_to(rough_crown, rough_goal, at), at);
     }
     std::stable_sort(starts.begin(), starts.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     for (const std::size_t k : {std::size_t{0}, std::size_t{2}}) {  // the second has a turn of its own more often
-      const Similarity at = refined(crown, mean, starts[k].second, options, trim, first_iterations);
-      if (const double residual = distance(at); residual < laid[i].found.residual) laid[i].found = {at, residual};
+      const Similarity at = refined(rough_crown, rough_mean, starts[k].second, options, trim, first_iterations);
+      if (const double residual = distance_to(rough_crown, rough_goal, at); residual < laid.found.residual)
+        laid.found = {at, residual};
     }
-    fits[i] = {i, rigid_fit(laid[i])};
-  });
-  // Size speaks too: twice as far counts what is larger or smaller by a fifth.
-  const auto badness = [](const RigidFit& fit) {
-    return fit.residual_mm * (1 + std::pow(std::log(fit.scale_ratio) / 0.2, 2));
-  };
-  std::stable_sort(fits.begin(), fits.end(), [&](const ToothFit& a, const ToothFit& b) {
-    if (also && (a.tooth == *also) != (b.tooth == *also)) return a.tooth == *also;
-    return badness(a.fit) < badness(b.fit);
-  });
-  fits.resize(std::clamp<std::size_t>(count, 1, fits.size()));
-  tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t k) {
-    Laid& here = laid[fits[k].tooth];
-    const OrientedCloud crown = thinned(upright_cloud(points, here.upright), crown_points);
-    const OrientedCloud mean = thinned(cloud_of(atlas.types[fits[k].tooth / 2].crown, here.upright.scale), mean_points);
-    here.found.at = refined(crown, mean, here.found.at, options, trim, last_iterations);
-    here.found.residual = two_way_distance(features_of(moved(crown, here.found.at), options.normal_weight_mm),
-                                           features_of(mean, options.normal_weight_mm), trim);
-    fits[k].fit = rigid_fit(here);
+    const OrientedCloud fine_crown = thinned(crown, crown_points), fine_mean = thinned(mean, mean_points);
+    laid.found.at = refined(fine_crown, fine_mean, laid.found.at, options, trim, last_iterations);
+    laid.found.residual = distance_to(fine_crown, features_of(fine_mean, options.normal_weight_mm), laid.found.at);
+    fits[i] = rigid_fit(laid);
   });
   return fits;
 }

@@ -3,12 +3,15 @@
 
 #include "pipeline/crown_likeness.hpp"
 
+#include "completion/mean_crown_agreement.hpp"
 #include "rhizodont/error.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <vector>
 
 namespace rhizodont {
 namespace {
@@ -22,50 +25,48 @@ std::size_t place_of(int fdi) {
   return 2 * static_cast<std::size_t>(tooth_type_of_fdi(fdi)) + (is_right_side(fdi) ? 1 : 0);
 }
 
+std::string refusal(const CrownLikeness& likeness, bool given) {
+  const ToothLikeness& said = likeness.said;
+  const ToothLikeness& next = likeness.next[0];
+  std::string sentence = given ? fmt::format("This does not look like a {}, nor like any other tooth", said.fdi)
+                               : "This does not look like any tooth";
+  sentence += fmt::format(" ({:.1f} mm from the mean crown of a {}, {} of which it covers", said.distance_mm, said.fdi,
+                          percent(likeness.seen));
+  if (next.distance_mm < said.distance_mm)
+    sentence += fmt::format("; {:.1f} mm from that of a {}", next.distance_mm, next.fdi);
+  return sentence + "). A root can be predicted for one whole crown that is not prepared.";
+}
+
 }  // namespace
 
 CrownLikeness judge_crown(const TriangleMesh& crown, std::optional<int> fdi, const Atlas& atlas,
                           const LikenessModel& model) {
-  const std::vector<ToothTraits> traits =
-      crown_traits(crown, atlas, fdi ? std::optional(place_of(*fdi)) : std::nullopt);
-  const Likeness judged = likeness(traits, model);
-  std::vector<std::size_t> order(traits.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return judged.probability[a] > judged.probability[b]; });
+  const Likeness judged = likeness(crown, model.classifier);
+  // The tooth that it is said to be first, then the most probable ones.
+  std::vector<std::size_t> teeth(tooth_count);
+  std::iota(teeth.begin(), teeth.end(), std::size_t{0});
+  const std::optional<std::size_t> given = fdi ? std::optional(place_of(*fdi)) : std::nullopt;
+  std::stable_sort(teeth.begin(), teeth.end(), [&](std::size_t a, std::size_t b) {
+    if ((a == given) != (b == given)) return a == given;
+    return judged.log_probability[a] > judged.log_probability[b];
+  });
+  teeth.resize(3);
+  const std::vector<MeanCrownAgreement> agreement = mean_crown_agreement(crown, atlas, teeth);
   const auto tooth = [&](std::size_t i) {
-    return ToothLikeness{fdi_of_type(static_cast<int>(traits[i].tooth / 2), traits[i].tooth % 2 == 1),
-                         judged.probability[i], traits[i].traits.distance_mm};
+    return ToothLikeness{fdi_of_type(static_cast<int>(teeth[i] / 2), teeth[i] % 2 == 1),
+                         std::exp(judged.log_probability[teeth[i]]), agreement[i].distance_mm};
   };
-  const std::size_t said = fdi ? 0 : order.front();  // a tooth that was asked for comes first
   CrownLikeness result;
-  result.said = tooth(said);
-  std::size_t next = 0;
-  for (const std::size_t i : order)
-    if (i != said && next < result.next.size()) result.next[next++] = tooth(i);
-  result.seen = traits[said].traits.seen;
-  result.explained = traits[said].traits.explained;
-  result.strangeness = judged.strangeness[said] / model.strange_bound;
-
-  const auto least_strange = std::min_element(judged.strangeness.begin(), judged.strangeness.end());
-  if (*least_strange > model.refused_bound) {
-    const ToothLikeness nearest = tooth(static_cast<std::size_t>(least_strange - judged.strangeness.begin()));
-    std::string sentence = "This does not look like any tooth";
-    if (fdi)
-      sentence = fmt::format(
-          "This does not look like a {} ({:.1f} mm from that tooth's mean crown, {} of which it covers), nor like any "
-          "other tooth",
-          *fdi, result.said.distance_mm, percent(result.seen));
-    throw InputError(
-        fmt::format("{}; the nearest is a {} ({:.1f} mm from its mean crown). A root can be predicted for a whole "
-                    "crown that is not "
-                    "prepared.",
-                    sentence, nearest.fdi, nearest.distance_mm));
-  }
-  if (judged.type_lead[said] > model.type_bound || judged.side_lead[said] > model.side_bound)
-    result.verdict = LikenessVerdict::other_tooth;
-  else if (result.strangeness > 1)
+  result.said = tooth(0);
+  result.next = {tooth(1), tooth(2)};
+  result.seen = agreement[0].seen;
+  result.explained = agreement[0].explained;
+  result.unlike_probability = 1 / (1 + std::exp(-judged.log_unlike));
+  if (judged.log_unlike > model.bounds.refused) throw InputError(refusal(result, fdi.has_value()));
+  if (judged.log_unlike > model.bounds.unlike)
     result.verdict = LikenessVerdict::unlike;
+  else if (judged.lead_over(teeth[0]) > model.bounds.other_tooth)
+    result.verdict = LikenessVerdict::other_tooth;
   return result;
 }
 

@@ -12,7 +12,7 @@ namespace rhizodont {
 /// Which tooth a crown looks like, and whether it looks like the one it is said to be.
 /// @param crown  open at its base, mm
 /// @param fdi    the tooth it is said to be; unset: the most probable one is taken
-/// Throws InputError for what looks like none of the 32 teeth, and as `crown_traits`.
+/// Throws InputError for what looks like none of the 32 teeth, and as `likeness`.
 CrownLikeness judge_crown(const TriangleMesh& crown, std::optional<int> fdi, const Atlas& atlas,
                           const LikenessModel& model);
 

@@ -57,7 +57,7 @@ Json likeness_json(const std::optional<CrownLikeness>& likeness) {
           {"next", {tooth(likeness->next[0]), tooth(likeness->next[1])}},
           {"seen", likeness->seen},
           {"explained", likeness->explained},
-          {"strangeness", likeness->strangeness}};
+          {"unlike_probability", likeness->unlike_probability}};
 }
 
 Json frame_json(const CompletionRecord& record) {

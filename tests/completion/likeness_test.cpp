@@ -2,17 +2,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "completion/likeness.hpp"
 
+#include "completion/mean_crown_agreement.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
+#include <Eigen/Geometry>
 
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
-#include <random>
 
 namespace rhizodont {
 namespace {
@@ -24,91 +25,134 @@ const Atlas& atlas() {
   return loaded;
 }
 
-/// Traits around a place of the type's own; those of a wrong tooth lie elsewhere.
-CrownTraits drawn(int type, bool own, std::mt19937& random) {
-  std::normal_distribution<float> normal;
-  CrownTraits t;
-  for (std::size_t i = 0; i < t.agreement.size(); ++i)
-    t.agreement[i] = 0.2F * normal(random) + (own ? 0.1F * static_cast<float>(type) : 2.0F);
-  for (float& offset : t.offsets) offset = 0.1F * normal(random) + (own ? 0.0F : 0.3F);
-  return t;
-}
-
-std::vector<LikenessSample> drawn_samples(int per_type) {
-  std::mt19937 random(7);
-  std::vector<LikenessSample> samples;
-  for (int i = 0; i < per_type; ++i)
-    for (int type = 0; type < tooth_type_count; ++type) {
-      LikenessSample sample{type, {}};
-      const auto left = static_cast<std::size_t>(2 * type);
-      const auto other = static_cast<std::size_t>(2 * ((type + 1 + i % 15) % tooth_type_count));
-      sample.traits.push_back({left, drawn(type, true, random)});
-      sample.traits.push_back({left + 1, drawn(type, false, random)});
-      sample.traits.push_back({other, drawn(type, false, random)});
-      samples.push_back(std::move(sample));
-    }
-  return samples;
-}
-
-const LikenessModel& drawn_model() {
-  static const LikenessModel model = fit_likeness(drawn_samples(90));
+const LikenessModel& shipped() {
+  static const LikenessModel model = load_likeness(root / "models" / "likeness.safetensors");
   return model;
 }
 
-TEST(Likeness, WhatLiesWhereATypeLiesIsOfThatType) {
-  for (const LikenessSample& sample : drawn_samples(5)) {
-    const Likeness judged = likeness(sample.traits, drawn_model());
-    EXPECT_NEAR(std::accumulate(judged.probability.begin(), judged.probability.end(), 0.0), 1, 1e-9);
-    EXPECT_GT(judged.probability.front(), 0.99);
-    EXPECT_LT(judged.strangeness[0], drawn_model().strange_bound * 2);
-    EXPECT_GT(judged.strangeness[1], drawn_model().refused_bound);
-  }
+TriangleMesh sample(const std::string& name) { return load_mesh(root / "samples" / name).mesh; }
+
+std::size_t tooth_of(int fdi) {
+  return 2 * static_cast<std::size_t>(tooth_type_of_fdi(fdi)) + (is_right_side(fdi) ? 1 : 0);
 }
 
-TEST(Likeness, StatisticsGoThroughAFile) {
+TEST(Likeness, ProbabilitiesSumToOneAndLeadsStartAtNone) {
+  const Likeness judged = likeness(sample("crown_34.ply"), shipped().classifier);
+  double sum = 0, least = 1e9;
+  for (std::size_t tooth = 0; tooth < tooth_count; ++tooth) {
+    sum += std::exp(judged.log_probability[tooth]);
+    least = std::min(least, judged.lead_over(tooth));
+  }
+  EXPECT_NEAR(sum, 1, 1e-9);
+  EXPECT_EQ(least, 0);
+  EXPECT_LE(judged.lead_over(tooth_of(34)), shipped().bounds.other_tooth);
+}
+
+TEST(Likeness, DoesNotDependOnWhereTheCrownIs) {
+  TriangleMesh crown = sample("crown_36.stl");
+  const Likeness before = likeness(crown, shipped().classifier);
+  const Eigen::AngleAxisd turn(1.1, Eigen::Vector3d(1, 2, -1).normalized());
+  for (Point& p : crown.vertices) p = turn * p + Point(30, -8, 5);
+  const Likeness after = likeness(crown, shipped().classifier);
+  // Another direction to begin with: columns fall elsewhere.
+  EXPECT_EQ(
+      std::max_element(before.log_probability.begin(), before.log_probability.end()) - before.log_probability.begin(),
+      std::max_element(after.log_probability.begin(), after.log_probability.end()) - after.log_probability.begin());
+  EXPECT_NEAR(after.log_unlike, before.log_unlike, 2);
+}
+
+std::ptrdiff_t above(double bound, const std::vector<Likeness>& of) {
+  return std::count_if(of.begin(), of.end(), [&](const Likeness& l) { return l.log_unlike > bound; });
+}
+
+/// Crowns of tooth 3 whose leads over it, and what speaks against their being crowns, rise evenly.
+std::vector<Likeness> rising(std::size_t count, double unlike_from, double wrong_side) {
+  std::vector<Likeness> crowns(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    crowns[i].log_probability.fill(-1e4);
+    crowns[i].log_probability[3] = -static_cast<double>(i);
+    crowns[i].log_probability[2] = wrong_side - static_cast<double>(i);
+    crowns[i].log_probability[8] = 0;
+    crowns[i].log_unlike = unlike_from + static_cast<double>(i);
+  }
+  return crowns;
+}
+
+TEST(Likeness, BoundsLieAsFarFromCrownsAsStrangersAndSidesAllow) {
+  const std::vector<std::size_t> teeth(2000, 3);
+  const std::vector<Likeness> strangers = rising(1000, 0, 0);
+  // Easily told: the bounds are those of what they are there for.
+  const std::vector<Likeness> easy = rising(2000, -1e5, -1e4);
+  const LikenessBounds bounds = likeness_bounds(easy, teeth, strangers);
+  EXPECT_EQ(above(bounds.unlike, strangers), 979);
+  EXPECT_EQ(above(bounds.refused, strangers), 499);
+  EXPECT_EQ(
+      std::count_if(easy.begin(), easy.end(), [&](const Likeness& l) { return l.lead_over(2) > bounds.other_tooth; }),
+      1666);
+  // Hardly told: the crowns come first.
+  const std::vector<Likeness> hard = rising(2000, 0, 0);
+  const LikenessBounds late = likeness_bounds(hard, teeth, strangers);
+  EXPECT_EQ(above(late.unlike, hard), 9);
+  EXPECT_GE(late.refused, late.unlike);
+  EXPECT_EQ(
+      std::count_if(hard.begin(), hard.end(), [&](const Likeness& l) { return l.lead_over(3) > late.other_tooth; }), 9);
+}
+
+TEST(Likeness, FewCrownsGiveNoBounds) {
+  const std::vector<Likeness> crowns = rising(500, 0, 0), strangers = rising(100, 0, 0);
+  const std::vector<std::size_t> teeth(500, 3);
+  EXPECT_NO_THROW(likeness_bounds(crowns, teeth, strangers));
+  EXPECT_THROW(likeness_bounds(rising(499, 0, 0), std::vector<std::size_t>(499, 3), strangers), UsageError);
+  EXPECT_THROW(likeness_bounds(crowns, std::vector<std::size_t>(499, 3), strangers), UsageError);
+  EXPECT_THROW(likeness_bounds(crowns, teeth, rising(99, 0, 0)), UsageError);
+}
+
+TEST(Likeness, BoundsGoThroughAFile) {
   const auto file = std::filesystem::path(testing::TempDir()) / "likeness.safetensors";
-  save_likeness(drawn_model(), file);
-  const LikenessModel loaded = load_likeness(file);
-  EXPECT_NEAR(loaded.side_bound, drawn_model().side_bound, 1e-4);
-  const LikenessSample sample = drawn_samples(1).front();
-  const Likeness before = likeness(sample.traits, drawn_model()), after = likeness(sample.traits, loaded);
-  for (std::size_t i = 0; i < before.strangeness.size(); ++i)
-    EXPECT_NEAR(after.strangeness[i], before.strangeness[i], 1e-3 * before.strangeness[i]);
+  TensorFile weights = read_safetensors(root / "models" / "likeness.safetensors");
+  note_bounds({1.5, -0.25, 3}, weights);
+  write_safetensors(file, weights);
+  const LikenessBounds bounds = load_likeness(file).bounds;
+  EXPECT_EQ(bounds.other_tooth, 1.5);
+  EXPECT_EQ(bounds.unlike, -0.25);
+  EXPECT_EQ(bounds.refused, 3);
+  note_bounds({1.5, 3, -0.25}, weights);
+  write_safetensors(file, weights);
+  EXPECT_THROW(load_likeness(file), InputError) << "what is refused is unlike first";
+  weights.tensors.erase("bounds");
+  write_safetensors(file, weights);
+  EXPECT_THROW(load_likeness(file), InputError);
   std::ofstream(file) << "nothing of the kind";
   EXPECT_THROW(load_likeness(file), InputError);
   std::filesystem::remove(file);
   EXPECT_THROW(load_likeness(file), InputError);
 }
 
-TEST(Likeness, FewCrownsAreNoStatistics) { EXPECT_THROW(fit_likeness(drawn_samples(20)), UsageError); }
-
-TEST(CrownTraits, TheToothThatWasAskedForComesFirstAndFits) {
-  const TriangleMesh crown = load_mesh(root / "samples" / "crown_36.stl").mesh;
-  const std::size_t said = 2 * static_cast<std::size_t>(tooth_type_of_fdi(36));
-  const auto traits = crown_traits(crown, atlas(), said);
-  ASSERT_EQ(traits.front().tooth, said);
-  EXPECT_EQ(traits.size(), 12U);
-  EXPECT_LT(traits.front().traits.distance_mm, 1);
-  EXPECT_GT(traits.front().traits.seen, 0.8);
-  const std::size_t incisor = 2 * static_cast<std::size_t>(tooth_type_of_fdi(11));
-  EXPECT_GT(crown_traits(crown, atlas(), incisor).front().traits.distance_mm, traits.front().traits.distance_mm);
+TEST(MeanCrownAgreement, TheToothThatItIsAgreesBest) {
+  const TriangleMesh crown = sample("crown_36.stl");
+  const auto agreement = mean_crown_agreement(crown, atlas(), {tooth_of(36), tooth_of(11), tooth_of(36)});
+  ASSERT_EQ(agreement.size(), 3U);
+  EXPECT_LT(agreement[0].distance_mm, 1);
+  EXPECT_GT(agreement[0].seen, 0.8);
+  EXPECT_GT(agreement[0].explained, 0.8);
+  EXPECT_GT(agreement[1].distance_mm, agreement[0].distance_mm);
+  EXPECT_EQ(agreement[2].distance_mm, agreement[0].distance_mm);
 }
 
-TEST(CrownTraits, AreTheSameForAnyNumberOfThreadsAndAnyPlace) {
-  TriangleMesh crown = load_mesh(root / "samples" / "crown_34.ply").mesh;
-  const auto many = crown_traits(crown, atlas());
+TEST(MeanCrownAgreement, IsTheSameForAnyNumberOfThreadsAndAnyPlace) {
+  TriangleMesh crown = sample("crown_34.ply");
+  const std::vector<std::size_t> teeth{tooth_of(34), tooth_of(45), tooth_of(21)};
+  const auto many = mean_crown_agreement(crown, atlas(), teeth);
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const auto single = crown_traits(crown, atlas());
+    const auto single = mean_crown_agreement(crown, atlas(), teeth);
     for (std::size_t i = 0; i < many.size(); ++i) {
-      EXPECT_EQ(many[i].tooth, single[i].tooth);
-      EXPECT_EQ(many[i].traits.agreement, single[i].traits.agreement);
-      EXPECT_EQ(many[i].traits.offsets, single[i].traits.offsets);
+      EXPECT_EQ(many[i].distance_mm, single[i].distance_mm);
+      EXPECT_EQ(many[i].seen, single[i].seen);
     }
   }
   for (Point& p : crown.vertices) p = Point(p.y(), p.z(), p.x()) + Point(30, -8, 5);
-  const auto moved = crown_traits(crown, atlas(), many.front().tooth);
-  EXPECT_NEAR(moved.front().traits.distance_mm, many.front().traits.distance_mm, 0.05);
+  EXPECT_NEAR(mean_crown_agreement(crown, atlas(), teeth).front().distance_mm, many.front().distance_mm, 0.05);
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ TEST(CrownLikeness, AnotherClassIsWarnedOf) {
   }
 }
 
-TEST(CrownLikeness, MostOfWhatIsNoWholeCrownIsSaidToBeNone) {
+TEST(CrownLikeness, WhatIsNoWholeCrownIsSaidToBeNone) {
   RandomStream random(3);
   int caught = 0, tried = 0;
   for (int kind = 0; kind < unlike_kind_count; ++kind)
@@ -86,7 +86,7 @@ TEST(CrownLikeness, MostOfWhatIsNoWholeCrownIsSaidToBeNone) {
       ++tried;
       if (!found) std::printf("%s of %d passes\n", name_of(static_cast<UnlikeKind>(kind)).c_str(), fdi);
     }
-  EXPECT_GE(caught, 0.55 * tried) << "mildly ground crowns and domes still pass: models/likeness.md";
+  EXPECT_GE(caught, 0.95 * tried);
 }
 
 TEST(CrownLikeness, AGuessSaysHowSureItIs) {

@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "completion/frame.hpp"
+#include "rhizodont/mesh.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace rhizodont {
+
+/// Lays the mean crowns of some of the 32 teeth (2 * type + (right side ? 1 : 0)) on an open crown: one fit for each,
+/// in their order. Deterministic. Throws as canonical_frame.
+std::vector<RigidFit> lay_teeth(const TriangleMesh& open_crown, const Atlas& atlas,
+                                const std::vector<std::size_t>& teeth);
+
+}  // namespace rhizodont

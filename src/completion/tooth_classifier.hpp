@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "completion/crown_panorama.hpp"
+#include "completion/frame.hpp"
+#include "learning/safetensors.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace rhizodont {
+
+/// Number of permanent teeth; tooth t is type t / 2 on the left (even) or right (odd) side.
+inline constexpr std::size_t tooth_count = 2 * static_cast<std::size_t>(tooth_type_count);
+
+/// What a panorama looks like: natural logarithms of probabilities that sum to 1 with `unlike`'s.
+struct ToothProbabilities {
+  std::array<double, tooth_count> log_tooth{};
+  double log_unlike = 0;  ///< little of a crown, or no crown
+};
+
+/// Convolutional network that tells teeth apart by their panorama. Convolutions wrap around the axis, so that turning
+/// the crown about it changes nothing but rounding and where strides fall. Holds its weights alone; may be used from
+/// several threads.
+class ToothClassifier {
+ public:
+  /// Takes the weights out of a file (models/likeness.md). Throws InputError if one is missing or of another size.
+  explicit ToothClassifier(const TensorFile& file);
+
+  /// Mean of what it says of the crown and of its mirror image. Deterministic.
+  ToothProbabilities operator()(const CrownPanorama& panorama) const;
+
+ private:
+  struct Layer {
+    Eigen::MatrixXf weight;  // outputs x (inputs x kernel rows x kernel columns)
+    Eigen::VectorXf bias;
+    Eigen::Index inputs = 0, kernel_rows = 1, kernel_columns = 1;
+  };
+  Eigen::VectorXd scores(const CrownPanorama& panorama) const;
+
+  std::vector<Layer> maps_, around_, dense_;
+};
+
+}  // namespace rhizodont
