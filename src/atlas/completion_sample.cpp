@@ -6,6 +6,7 @@
 #include "atlas/completion_sample.hpp"
 
 #include "atlas/random_stream.hpp"
+#include "base/option_range.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
@@ -19,17 +20,19 @@
 namespace rhizodont {
 namespace {
 
-void check(const CompletionSampleOptions& options) {
-  const auto share = [](double x) { return x >= 0 && x <= 1; };
-  if (options.input_points == 0 || options.target_points == 0)
-    throw UsageError("A training sample needs at least one input and one target point.");
-  if (options.type < -1 || options.type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
-  if (!share(options.paper_crop_share) || !share(options.gap_probability) || !share(options.skirt_probability) ||
-      !share(options.lost_turn_share))
-    throw UsageError("Shares of training samples lie between 0 and 1.");
-  if (!(options.scanner_noise_mm >= 0) || !(options.skirt_mm >= 0) || !(options.rotation_jitter_radians >= 0) ||
-      !(options.form_axis_error_degrees >= 0))
-    throw UsageError("Noise, skirt and jitter of training samples cannot be negative.");
+void require_in_range(const CompletionSampleOptions& options) {
+  require_ranges("a training sample",
+                 {{"input_points", options.input_points, OptionRange::at_least(1)},
+                  {"target_points", options.target_points, OptionRange::at_least(1)},
+                  {"type", options.type, OptionRange::at_least(-1).below(tooth_type_count)},
+                  {"paper_crop_share", options.paper_crop_share, share_range},
+                  {"scanner_noise_mm", options.scanner_noise_mm, OptionRange::at_least(0)},
+                  {"gap_probability", options.gap_probability, share_range},
+                  {"skirt_probability", options.skirt_probability, share_range},
+                  {"skirt_mm", options.skirt_mm, OptionRange::at_least(0)},
+                  {"lost_turn_share", options.lost_turn_share, share_range},
+                  {"rotation_jitter_radians", options.rotation_jitter_radians, OptionRange::at_least(0)},
+                  {"form_axis_error_degrees", options.form_axis_error_degrees, OptionRange::at_least(0)}});
 }
 
 struct SurfacePoint {
@@ -81,7 +84,7 @@ CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn) {
 
 CompletionSample make_completion_sample(const ToothFamilies& families, std::uint64_t seed,
                                         const CompletionSampleOptions& options) {
-  check(options);
+  require_in_range(options);
   RandomStream random(seed, 100);
   CompletionSample sample;
   sample.type = static_cast<int>(random.index(tooth_type_count));

@@ -6,6 +6,7 @@
 #include "atlas/self_crossing.hpp"
 #include "atlas/tooth_family.hpp"
 #include "atlas/tooth_template.hpp"
+#include "base/option_range.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
@@ -240,7 +241,10 @@ class CrownModelLoader {
 }  // namespace
 
 ToothFamilies load_tooth_families(const std::filesystem::path& folder, const FamilyLoadOptions& options) {
-  if (options.vertices < 500) throw UsageError("A template needs at least 500 vertices.");
+  require_ranges("the tooth families", {{"vertices", options.vertices, OptionRange::at_least(500)},
+                                        {"crown_modes", options.crown_modes, OptionRange::at_least(0).at_most(40)}});
+  for (const int type : options.types)
+    require_ranges("the tooth families", {{"types", type, OptionRange::at_least(0).below(tooth_type_count)}});
   constexpr double usual_crown_share = 0.38;
   ToothFamilies families;
   families.dimensions = read_dimensions(folder / "anatomy.csv");
@@ -263,8 +267,6 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
     wanted.resize(tooth_type_count);
     std::iota(wanted.begin(), wanted.end(), 0);
   }
-  for (int type : wanted)
-    if (type < 0 || type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
   std::array<Eigen::Vector3d, tooth_type_count> buccal;
   tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
     const int type = wanted[i];

@@ -7,6 +7,7 @@
 #include "atlas/crown_crop.hpp"
 #include "atlas/gum_flange.hpp"
 #include "atlas/remeshing.hpp"
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/diagnosis.hpp"
@@ -24,13 +25,15 @@
 namespace rhizodont {
 namespace {
 
-void check(const SkirtSampleOptions& o) {
-  const auto share = [](double x) { return x >= 0 && x <= 1; };
-  if (o.type < -1 || o.type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
-  if (!(o.finest_edge_mm >= 0.1 && o.coarsest_edge_mm >= o.finest_edge_mm && o.coarsest_edge_mm <= 1))
-    throw UsageError("Edges of generated scans lie between 0.1 and 1 mm.");
-  if (!share(o.clean_share) || !share(o.hole_share)) throw UsageError("Shares of crowns lie between 0 and 1.");
-  if (!(o.largest_noise >= 0 && o.largest_noise <= 0.3)) throw UsageError("The noise lies between 0 and 0.3 edges.");
+void require_in_range(const SkirtSampleOptions& options) {
+  require_ranges(
+      "a training sample",
+      {{"type", options.type, OptionRange::at_least(-1).below(tooth_type_count)},
+       {"finest_edge_mm", options.finest_edge_mm, OptionRange::at_least(0.1).at_most(1)},
+       {"coarsest_edge_mm", options.coarsest_edge_mm, OptionRange::at_least(options.finest_edge_mm).at_most(1)},
+       {"clean_share", options.clean_share, share_range},
+       {"hole_share", options.hole_share, share_range},
+       {"largest_noise", options.largest_noise, OptionRange::at_least(0).at_most(0.3)}});
 }
 
 /// Between 0 and 1, smooth at the scale of a wavelength.
@@ -232,7 +235,7 @@ std::optional<SkirtSample> draw(const ToothFamilies& families, const SkirtSample
 }  // namespace
 
 SkirtSample make_skirt_sample(const ToothFamilies& families, std::uint64_t seed, const SkirtSampleOptions& options) {
-  check(options);
+  require_in_range(options);
   RandomStream random(seed, 400);
   for (int attempt = 0; attempt < 20; ++attempt) {
     try {

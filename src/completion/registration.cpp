@@ -6,6 +6,7 @@
 // P. Krsek, "Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm", 2005;
 // similarity from pairs: S. Umeyama, "Least-squares estimation of transformation parameters between two point
 // patterns", 1991.
+#include "base/option_range.hpp"
 #include "completion/frame.hpp"
 #include "completion/lay_teeth.hpp"
 #include "completion/oriented_clouds.hpp"
@@ -182,11 +183,13 @@ Registered register_cloud(const OrientedCloud& crown, const OrientedCloud& mean,
   return best;
 }
 
-void check(const RegistrationOptions& options) {
-  if (options.start_angles < 4 || options.refined_starts < 1 || options.iterations < 1)
-    throw UsageError("A registration needs at least 4 starting angles, 1 refined start and 1 iteration.");
-  if (!(options.trim >= 0.3 && options.trim <= 1) || !(options.normal_weight_mm >= 0))
-    throw UsageError("The trimmed share of a registration lies between 0.3 and 1, its normal weight is not negative.");
+void require_in_range(const RegistrationOptions& options) {
+  require_ranges("a registration",
+                 {{"start_angles", options.start_angles, OptionRange::at_least(4)},
+                  {"refined_starts", options.refined_starts, OptionRange::at_least(1).at_most(options.start_angles)},
+                  {"iterations", options.iterations, OptionRange::at_least(1)},
+                  {"trim", options.trim, OptionRange::at_least(0.3).at_most(1)},
+                  {"normal_weight_mm", options.normal_weight_mm, OptionRange::at_least(0)}});
 }
 
 Eigen::Matrix3d about_z(double angle) { return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()).toRotationMatrix(); }
@@ -295,7 +298,7 @@ void check_mean(const MeanCrown& mean) {
 
 CrownFrame canonical_frame(const TriangleMesh& open_crown, int fdi, const MeanCrown& mean,
                            const RegistrationOptions& options) {
-  check(options);
+  require_in_range(options);
   check_mean(mean);
   const bool right_side = is_right_side(fdi);
   return frame_from(surface_points(open_crown), growth_axis(open_crown), area_centroid(open_crown), right_side, mean,
@@ -303,7 +306,7 @@ CrownFrame canonical_frame(const TriangleMesh& open_crown, int fdi, const MeanCr
 }
 
 TypeGuess guess_fdi_type(const TriangleMesh& open_crown, const Atlas& atlas, const RegistrationOptions& options) {
-  check(options);
+  require_in_range(options);
   const OrientedPoints points = surface_points(open_crown);
   const Eigen::Vector3d axis = growth_axis(open_crown);
   const Point centre = area_centroid(open_crown);
@@ -341,7 +344,7 @@ TypeGuess guess_fdi_type(const TriangleMesh& open_crown, const Atlas& atlas, con
 
 RigidFit fit_mean_crown(const OrientedPoints& points, const MeanCrown& mean, bool right_side, bool any_orientation,
                         const Eigen::Vector3d& axis_hint, const RegistrationOptions& options) {
-  check(options);
+  require_in_range(options);
   check_mean(mean);
   if (points.points.size() < 50 || points.points.size() != points.normals.size())
     throw InputError("Too few surface points to lay a mean crown on.");

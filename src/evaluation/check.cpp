@@ -4,6 +4,7 @@
 // coordinates and triangles alone. Bins of the deviation: table 3 of "Completing Dental Models While Preserving Crown
 // Geometry and Meshing Topology".
 #include "rhizodont/check.hpp"
+#include "base/option_range.hpp"
 
 #include "mesh/adjacency.hpp"
 #include "mesh/closest_point.hpp"
@@ -310,8 +311,7 @@ CheckOptions allowing_for(const std::vector<RepairStep>& repairs) {
 }
 
 CheckReport check(const TriangleMesh& crown, const TriangleMesh& tooth, const CheckOptions& options) {
-  if (!(options.least_kept_share >= 0 && options.least_kept_share <= 1))
-    throw UsageError("the least share of the crown to be kept lies between 0 and 1");
+  require_ranges("the check", {{"least_kept_share", options.least_kept_share, share_range}});
   if (crown.triangles.empty()) throw InputError("the crown has no triangles");
   require_valid_indices(crown);
   require_finite(crown.vertices);

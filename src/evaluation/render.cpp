@@ -4,6 +4,7 @@
 // (in the manner of M. Mittring, "Finding next gen: CryEngine 2", SIGGRAPH 2007 courses), supersampling.
 #include "evaluation/render.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "rhizodont/error.hpp"
@@ -282,10 +283,10 @@ void copy_to_sheet(const Tile& tile, const RenderOptions& options, int column, i
 }
 
 void require_drawable(const std::vector<RenderItem>& items, const RenderOptions& options) {
-  const auto in_range = [](int value, int low, int high) { return value >= low && value <= high; };
-  if (!in_range(options.width, 16, 8192) || !in_range(options.height, 16, 8192))
-    throw UsageError("a tile is 16 to 8192 pixels wide and high");
-  if (!in_range(options.supersampling, 1, 8)) throw UsageError("supersampling lies between 1 and 8");
+  constexpr OptionRange pixels = OptionRange::at_least(16).at_most(8192);
+  require_ranges("a picture", {{"width", options.width, pixels},
+                               {"height", options.height, pixels},
+                               {"supersampling", options.supersampling, OptionRange::at_least(1).at_most(8)}});
   if (items.empty() || options.views.empty()) throw UsageError("a picture needs at least one mesh and one view");
   const auto tiles = static_cast<double>(items.size() * options.views.size());
   if (tiles * options.width * options.height > 4e8)

@@ -6,6 +6,7 @@
 // learn?", 2019.
 #include "evaluation/root_figures.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "mesh/nearest_vertex.hpp"
@@ -23,10 +24,11 @@
 namespace rhizodont {
 namespace {
 
-void require_options_in_range(const RootFigureOptions& options) {
-  if (options.samples < 100) throw UsageError("At least 100 points are needed to compare two surfaces.");
-  if (!(options.root_threshold_mm > 0) || !(options.surface_threshold > 0) || !(options.least_prominence_mm > 0))
-    throw UsageError("Thresholds and the least prominence of an apex must be positive.");
+void require_in_range(const RootFigureOptions& options) {
+  require_ranges("root figures", {{"samples", options.samples, OptionRange::at_least(100)},
+                                  {"root_threshold_mm", options.root_threshold_mm, OptionRange::above(0)},
+                                  {"surface_threshold", options.surface_threshold, OptionRange::above(0)},
+                                  {"least_prominence_mm", options.least_prominence_mm, OptionRange::above(0)}});
 }
 
 void require_surface(const TriangleMesh& mesh, const char* what) {
@@ -177,7 +179,7 @@ Eigen::Vector3d crown_growth_axis(const TriangleMesh& crown) {
 
 RootFigures root_figures(const TriangleMesh& crown, const TriangleMesh& truth, const TriangleMesh& predicted,
                          const Eigen::Vector3d& axis, const RootFigureOptions& options) {
-  require_options_in_range(options);
+  require_in_range(options);
   if (!(axis.norm() > 0) || !axis.allFinite()) throw UsageError("The growth axis has no direction.");
   require_surface(crown, "The crown");
   require_surface(truth, "The true tooth");

@@ -6,6 +6,7 @@
 // point sets: the trimmed iterative closest point algorithm", 2005.
 #include "evaluation/template_predictor.hpp"
 
+#include "base/option_range.hpp"
 #include "evaluation/root_figures.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
@@ -167,10 +168,13 @@ Fit fit_from(const Registration& r, const Eigen::Matrix3d& rotation) {
   return fit;
 }
 
-void require_options_in_range(const TemplateFitOptions& options) {
-  if (options.start_rotations < 1 || options.iterations < 1 || options.samples < 100 || !(options.trim > 0) ||
-      options.trim > 1 || !(options.border_margin_mm >= 0) || !(options.largest_scale_step > 1))
-    throw UsageError("An option of the template fit is out of its range.");
+void require_in_range(const TemplateFitOptions& options) {
+  require_ranges("the template fit", {{"start_rotations", options.start_rotations, OptionRange::at_least(1)},
+                                      {"iterations", options.iterations, OptionRange::at_least(1)},
+                                      {"samples", options.samples, OptionRange::at_least(100)},
+                                      {"trim", options.trim, OptionRange::above(0).at_most(1)},
+                                      {"border_margin_mm", options.border_margin_mm, OptionRange::at_least(0)},
+                                      {"largest_scale_step", options.largest_scale_step, OptionRange::above(1)}});
 }
 
 }  // namespace
@@ -198,7 +202,7 @@ TemplateTooth load_template_tooth(const std::filesystem::path& folder, int fdi) 
 }
 
 TriangleMesh fit_template(const TriangleMesh& crown, const TemplateTooth& tooth, const TemplateFitOptions& options) {
-  require_options_in_range(options);
+  require_in_range(options);
   const Registration registration(crown, tooth, options);
   const Eigen::Matrix3d upright = Eigen::Quaterniond::FromTwoVectors(tooth.axis, registration.axis).toRotationMatrix();
   std::vector<Fit> fits(static_cast<std::size_t>(options.start_rotations));

@@ -5,6 +5,7 @@
 
 #include "fusion/fuse.hpp"
 
+#include "base/option_range.hpp"
 #include "fusion/crown_border.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
@@ -208,10 +209,27 @@ FusedTooth fuse_on(const Ground& ground, const FuseOptions& options, FuseSeconds
   }
 }
 
+void require_in_range(const FuseOptions& options) {
+  constexpr OptionRange growth = OptionRange::above(0);
+  require_ranges("joining crown and root", {{"edge_growth", options.edge_growth, growth},
+                                            {"edge_shrinkage", options.edge_shrinkage, growth},
+                                            {"attempts", options.attempts, OptionRange::at_least(1)},
+                                            {"remesh_attempts", options.remesh_attempts, OptionRange::at_least(1)}});
+  for (const double other : options.other_growths)
+    require_ranges("joining crown and root", {{"other_growths", other, growth}});
+  require_in_range(options.separation);
+  require_in_range(options.sites);
+  require_in_range(options.join);
+  require_in_range(options.restore);
+  require_in_range(options.remesh);
+  require_in_range(options.transition);
+}
+
 }  // namespace
 
 FusedTooth fuse_crown_and_root(const TriangleMesh& crown, const TriangleMesh& guiding_surface,
                                const Eigen::Vector3d& growth_axis, const FuseOptions& options) {
+  require_in_range(options);
   FuseSeconds spent;
   Stopwatch watch;
   Ground ground(crown, guiding_surface, growth_axis, options);

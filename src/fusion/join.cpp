@@ -5,6 +5,7 @@
 
 #include "fusion/join.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 
@@ -29,8 +30,15 @@ std::vector<int> uncrowded_sites(const std::vector<Point>& sites, double least_d
 
 }  // namespace
 
+void require_in_range(const JoinOptions& options) {
+  require_in_range(options.delaunay);
+  require_in_range(options.voronoi);
+  require_ranges("joining", {{"least_distance", options.least_distance, OptionRange::at_least(0)}});
+}
+
 Joining join_crown_and_root(const TriangleMesh& crown, const std::vector<Point>& root_vertices,
                             const TriangleMesh& guiding_surface, const JoinOptions& options) {
+  require_in_range(options);
   const DelaunayMesh delaunay = make_delaunay_mesh(crown, options.delaunay);
   Joining joining;
   joining.crown_vertices = static_cast<int>(crown.vertices.size());

@@ -18,6 +18,9 @@ struct JoinOptions {
                                      ///< arithmetic and meet nothing but each other
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const JoinOptions& options);
+
 /// Crown and root joined as the dual of a restricted Voronoi diagram. Sites are numbered: the crown's vertices in their
 /// order, then the Steiner points that made the crown a Delaunay mesh, then the root vertices.
 struct Joining {

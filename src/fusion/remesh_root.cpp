@@ -7,6 +7,7 @@
 
 #include "fusion/remesh_root.hpp"
 
+#include "base/option_range.hpp"
 #include "fusion/fitted_patch.hpp"
 #include "fusion/mend_angles.hpp"
 
@@ -131,9 +132,24 @@ bool smallest_angles_suffice(const FittedPatch& patch, const RemeshRootOptions& 
 
 }  // namespace
 
+void require_in_range(const RemeshRootOptions& options) {
+  require_ranges("remeshing", {{"iterations", options.iterations, OptionRange::at_least(0)},
+                               {"longest", options.longest, OptionRange::above(1)},
+                               {"shortest", options.shortest, OptionRange::above(0).below(1)},
+                               {"fading", options.fading, OptionRange::above(0)},
+                               {"least_angle", options.least_angle, OptionRange::at_least(0).at_most(30)},
+                               {"mending_rounds", options.mending_rounds, OptionRange::at_least(0)},
+                               {"inner_angle", options.inner_angle, OptionRange::at_least(0).at_most(30)},
+                               {"border_angle", options.border_angle, OptionRange::at_least(0).at_most(30)},
+                               {"mending_passes", options.mending_passes, OptionRange::at_least(0)},
+                               {"mending_splits", options.mending_splits, OptionRange::at_least(0)},
+                               {"mending_places", options.mending_places, OptionRange::at_least(0)}});
+}
+
 RootRemeshing remesh_root(RestoredTooth& tooth, const SurfaceWalk& guiding_surface, const EdgeLengths& lengths,
                           const std::vector<Point>& frozen_centres, double frozen_radius,
                           const RemeshRootOptions& options) {
+  require_in_range(options);
   FittedPatch patch(tooth, guiding_surface, lengths);
   const auto triangles = static_cast<double>(tooth.mesh.triangles.size()) - tooth.crown_triangles;
   patch.freeze(frozen_centres, frozen_radius);

@@ -25,6 +25,9 @@ struct RemeshRootOptions {
   double mending_places = 40;    ///< >= 0: places for vertices that it may try, likewise
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const RemeshRootOptions& options);
+
 /// What was done to the root's triangles.
 struct RootRemeshing {
   int splits = 0;

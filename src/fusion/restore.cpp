@@ -7,6 +7,7 @@
 
 #include "fusion/restore.hpp"
 
+#include "base/option_range.hpp"
 #include "fusion/fill_holes.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/border_pieces.hpp"
@@ -266,7 +267,12 @@ std::set<int> cutting_sites(const TriangleMesh& mesh, std::size_t crown_triangle
 
 }  // namespace
 
+void require_in_range(const RestoreOptions& options) {
+  require_ranges("restoring", {{"rounds", options.rounds, OptionRange::at_least(0)}});
+}
+
 RestoredTooth restore_crown(const TriangleMesh& crown, const Joining& joining, const RestoreOptions& options) {
+  require_in_range(options);
   RootPatch patch(crown, joining);
   for (int round = 0;; ++round) {
     patch.make_manifold();

@@ -12,6 +12,9 @@ struct RestoreOptions {
   int rounds = 6;         ///< how often root triangles that cut others may be taken back and the gap filled anew, >= 0
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const RestoreOptions& options);
+
 /// A closed tooth that contains the crown as it was: vertices [0, crown_vertices) and triangles [0, crown_triangles)
 /// are the crown's own, in the crown's order; no Steiner point is left.
 struct RestoredTooth {

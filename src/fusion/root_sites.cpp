@@ -6,6 +6,7 @@
 
 #include "fusion/root_sites.hpp"
 
+#include "base/option_range.hpp"
 #include "fusion/point_grid.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
@@ -158,8 +159,17 @@ class Front {
 
 }  // namespace
 
+void require_in_range(const RootSitesOptions& options) {
+  require_ranges("the root's sites", {{"spacing", options.spacing, OptionRange::above(0.5).below(1)},
+                                      {"reach", options.reach, OptionRange::above(1)},
+                                      {"spring_reach", options.spring_reach, OptionRange::above(1)},
+                                      {"stiffness", options.stiffness, OptionRange::above(0).below(2)},
+                                      {"spring_steps", options.spring_steps, OptionRange::at_least(0)}});
+}
+
 std::vector<Point> root_sites(const SurfaceWalk& walk, const std::vector<bool>& is_root, const TriangleMesh& crown,
                               const CrownBorder& border, const EdgeLengths& lengths, const RootSitesOptions& options) {
+  require_in_range(options);
   Front front(walk, is_root, crown, lengths, options);
   front.start_at_border(crown, border);
   front.start_where_bare();

@@ -20,6 +20,9 @@ struct RootSitesOptions {
   int spring_steps = 3;       ///< >= 0
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const RootSitesOptions& options);
+
 /// Chooses the root's vertices on the guiding surface so that they lie like the points of an equilateral lattice. The
 /// front starts at the crown's border with the ideal apex of each border edge and advances row by row: neighbouring
 /// sites propose the third corner of an equilateral triangle, the sites about it shift it until it lies at the wanted

@@ -8,6 +8,7 @@
 
 #include "fusion/separate.hpp"
 
+#include "base/option_range.hpp"
 #include "rhizodont/error.hpp"
 
 #include <utility>
@@ -37,8 +38,14 @@ void keep_connected(const TriangleMesh& surface, int seed, std::vector<bool>& ma
 
 }  // namespace
 
+void require_in_range(const SeparationOptions& options) {
+  require_ranges("separating crown and root", {{"epsilon", options.epsilon, OptionRange::above(0)},
+                                               {"clearance", options.clearance, OptionRange::at_least(0)}});
+}
+
 std::vector<bool> separate_crown_and_root(const TriangleMesh& guiding_surface, const CrownDistances& distances,
                                           const Eigen::Vector3d& growth_axis, const SeparationOptions& options) {
+  require_in_range(options);
   std::vector<bool> is_root(guiding_surface.vertices.size());
   int lowest = -1;
   double lowest_height = 0;

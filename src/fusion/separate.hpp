@@ -14,6 +14,9 @@ struct SeparationOptions {
   double clearance = 0.1;  ///< mm, >= 0: nearer ones are left to the crown although they lie beyond its border
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const SeparationOptions& options);
+
 /// Separates the guiding surface into crown and root (paper, 3.6): true for the vertices that belong to the root. A
 /// vertex is root if it is farther than epsilon from the crown, or nearer but beyond the crown's border by more than
 /// the clearance: the closest point of the crown then lies on its border. Only the part connected to the root vertex

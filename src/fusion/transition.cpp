@@ -7,6 +7,7 @@
 
 #include "fusion/transition.hpp"
 
+#include "base/option_range.hpp"
 #include "fusion/fitted_patch.hpp"
 #include "mesh/edge_distance.hpp"
 #include "mesh/geometry.hpp"
@@ -247,7 +248,21 @@ double chosen_width(const RestoredTooth& tooth, const TransitionOptions& options
 
 }  // namespace
 
+void require_in_range(const TransitionOptions& options) {
+  if (options.width) require_ranges("the transition", {{"width", *options.width, OptionRange::at_least(0)}});
+  require_ranges("the transition",
+                 {{"gap", options.gap, OptionRange::at_least(0)},
+                  {"slope", options.slope, OptionRange::above(0)},
+                  {"rows", options.rows, OptionRange::above(0)},
+                  {"least_width", options.least_width, OptionRange::at_least(0)},
+                  {"largest_width", options.largest_width, OptionRange::at_least(options.least_width)},
+                  {"inner_angle", options.inner_angle, OptionRange::at_least(0).at_most(30)},
+                  {"border_angle", options.border_angle, OptionRange::at_least(0).at_most(30)},
+                  {"cut_rounds", options.cut_rounds, OptionRange::at_least(1)}});
+}
+
 Transition smooth_transition(RestoredTooth& tooth, const TransitionOptions& options) {
+  require_in_range(options);
   Transition result;
   result.width = chosen_width(tooth, options);
   std::vector<int> crown(static_cast<std::size_t>(tooth.crown_vertices));

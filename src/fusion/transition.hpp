@@ -23,6 +23,9 @@ struct TransitionOptions {
   int cut_rounds = 6;        ///< >= 1: tests for self-intersection, each but the last followed by taking moves back
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const TransitionOptions& options);
+
 struct Transition {
   std::vector<int> vertices;  ///< the vertices that form the transition, ascending
   double width = 0;           ///< mm

@@ -4,13 +4,16 @@
 // "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", section 3.4.
 #include "isosurface/guiding_surface.hpp"
 
+#include "base/option_range.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {
 
 GuidingSurface guiding_surface(const OrientedPoints& samples, std::span<const double> weights,
                                std::span<const Point> seeds, const GuidingSurfaceOptions& options) {
-  if (options.smearings < 1) throw UsageError("The normals have to be smeared at least once.");
+  require_ranges("the guiding surface", {{"smearings", options.smearings, OptionRange::at_least(1)}});
+  require_in_range(options.indicator);
+  require_in_range(options.isosurface);
   const std::span<const Point> start = seeds.empty() ? std::span<const Point>(samples.points) : seeds;
   IndicatorOptions indicator = options.indicator;
   IsosurfaceOptions isosurface = options.isosurface;

@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "base/option_range.hpp"
 #include "isosurface/ball_labels.hpp"
 #include "isosurface/cut_cells.hpp"
 #include "isosurface/edge_mesh.hpp"
@@ -20,17 +21,8 @@ namespace rhizodont {
 namespace {
 
 void check_options(const IsosurfaceOptions& options, double iso) {
-  const auto require = [](bool holds, const char* sentence) {
-    if (!holds) throw UsageError(sentence);
-  };
-  require(std::isfinite(iso), "The value on the surface must be a number.");
-  require(options.e > 0.0 && std::isfinite(options.e), "The tiling's size e must be a positive number of millimetres.");
-  require(options.origin.allFinite(), "The tiling's origin must be a point.");
-  require(options.tolerance > 0.0 && std::isfinite(options.tolerance), "The tolerance must be positive.");
-  require(options.max_displacement > 0.0 && options.max_displacement <= 1.0,
-          "The largest displacement must lie between 0 and 1, in units of e.");
-  require(options.max_change >= 0.0, "The largest section to be closed must not be negative.");
-  require(options.max_cells > 0, "The largest number of cells must be positive.");
+  if (!std::isfinite(iso)) throw UsageError("The value on the surface must be a number.");
+  require_in_range(options);
 }
 
 /// Of a sheet as thick as the tiling one vertex takes up about e^2.
@@ -81,6 +73,15 @@ void check_outward(const TriangleMesh& mesh) {
 }
 
 }  // namespace
+
+void require_in_range(const IsosurfaceOptions& options) {
+  if (!options.origin.allFinite()) throw UsageError("The option origin of the isosurface must be a point.");
+  require_ranges("the isosurface", {{"e", options.e, OptionRange::above(0)},
+                                    {"tolerance", options.tolerance, OptionRange::above(0)},
+                                    {"max_displacement", options.max_displacement, OptionRange::above(0).at_most(1)},
+                                    {"max_change", options.max_change, OptionRange::at_least(0)},
+                                    {"max_cells", options.max_cells, OptionRange::at_least(1)}});
+}
 
 Isosurface mid_normal(const ScalarField& field, double iso, std::span<const Point> seeds,
                       const IsosurfaceOptions& options) {

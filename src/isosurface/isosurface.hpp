@@ -28,6 +28,9 @@ struct IsosurfaceOptions {
   std::size_t max_cells = 20'000'000;  ///< cut tetrahedra before the surface is taken for unbounded
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const IsosurfaceOptions& options);
+
 /// An isosurface and how it came about.
 struct Isosurface {
   TriangleMesh mesh;                    ///< closed, 2-manifold, oriented outward, one component

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <random>
 
+#include "base/option_range.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "rhizodont/error.hpp"
@@ -59,8 +60,11 @@ double largest_changes(const std::vector<Eigen::Vector3d>& a, const std::vector<
 }  // namespace
 
 IterativePoisson iterative_poisson(std::span<const Point> points, const IterativePoissonOptions& options) {
-  if (options.neighbours < 1 || options.most_iterations < 1 || !(options.still > 0.0))
-    throw UsageError("Iterative Poisson needs at least one neighbour and one iteration, and a positive limit.");
+  require_ranges("iterative Poisson", {{"e", options.e, OptionRange::above(0)},
+                                       {"neighbours", options.neighbours, OptionRange::at_least(1)},
+                                       {"most_iterations", options.most_iterations, OptionRange::at_least(1)},
+                                       {"still", options.still, OptionRange::above(0)}});
+  require_in_range(options.indicator);
   IterativePoisson result;
   result.oriented.points.assign(points.begin(), points.end());
   result.oriented.normals = random_normals(points.size(), options.seed);

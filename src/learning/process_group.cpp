@@ -7,6 +7,7 @@
 
 #include <charconv>
 
+#include "base/option_range.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {
@@ -50,9 +51,13 @@ struct ProcessGroup::Connection {
   c10::intrusive_ptr<c10d::ProcessGroupGloo> group;
 };
 
+void require_in_range(const ProcessOptions& options) {
+  require_ranges("training together", {{"count", options.count, OptionRange::at_least(1)},
+                                       {"rank", options.rank, OptionRange::at_least(0).below(options.count)}});
+}
+
 ProcessGroup::ProcessGroup(const ProcessOptions& options) : size_(options.count), rank_(options.rank) {
-  if (size_ < 1 || rank_ < 0 || rank_ >= size_)
-    throw UsageError("Processes that train together have numbers from 0 to one less than their count.");
+  require_in_range(options);
   if (size_ == 1) return;
   const std::size_t colon = options.first_address.rfind(':');
   c10d::TCPStoreOptions store;

@@ -14,6 +14,7 @@
 #include <numbers>
 #include <optional>
 
+#include "base/option_range.hpp"
 #include "learning/adapointr.hpp"
 #include "learning/checkpoint.hpp"
 #include "learning/losses.hpp"
@@ -64,14 +65,33 @@ struct Share {
   Figures figures;
 };
 
-void check_options(const TrainingOptions& o) {
-  check_shape(o.shape);
-  const bool good = o.batch >= 1 && o.threads >= 1 && o.batch % o.threads == 0 && o.samples >= 1 && o.hours >= 0 &&
-                    o.learning_rate > 0 && o.lowest_rate >= 0 && o.lowest_rate <= 1 && o.warm_up >= 0 &&
-                    o.weight_decay >= 0 && o.gradient_clip > 0 && o.average_decay >= 0 && o.average_decay <= 1 &&
-                    o.unknown_share >= 0 && o.unknown_share <= 1 && o.root_weight > 0 && o.denoise_queries >= 0 &&
-                    o.denoise_jitter >= 0 && o.validation_samples >= 0 && o.log_steps >= 1;
-  if (!good) throw UsageError("A training option is out of range (the batch must be a multiple of the threads).");
+void require_in_range(const TrainingOptions& options) {
+  check_shape(options.shape);
+  require_in_range(options.processes);
+  require_ranges("training", {{"batch", options.batch, OptionRange::at_least(1)},
+                              {"threads", options.threads, OptionRange::at_least(1).at_most(options.batch)},
+                              {"samples", options.samples, OptionRange::at_least(1)},
+                              {"hours", options.hours, OptionRange::at_least(0)},
+                              {"learning_rate", options.learning_rate, OptionRange::above(0)},
+                              {"lowest_rate", options.lowest_rate, share_range},
+                              {"warm_up", options.warm_up, OptionRange::at_least(0)},
+                              {"weight_decay", options.weight_decay, OptionRange::at_least(0)},
+                              {"gradient_clip", options.gradient_clip, OptionRange::above(0)},
+                              {"average_decay", options.average_decay, share_range},
+                              {"unknown_share", options.unknown_share, share_range},
+                              {"root_weight", options.root_weight, OptionRange::above(0)},
+                              {"coarse_weight", options.coarse_weight, OptionRange::at_least(0)},
+                              {"denoise_weight", options.denoise_weight, OptionRange::at_least(0)},
+                              {"chamfer_weight", options.chamfer_weight, OptionRange::at_least(0)},
+                              {"normal_weight", options.normal_weight, OptionRange::at_least(0)},
+                              {"spread_weight", options.spread_weight, OptionRange::at_least(0)},
+                              {"denoise_queries", options.denoise_queries, OptionRange::at_least(0)},
+                              {"denoise_jitter", options.denoise_jitter, OptionRange::at_least(0)},
+                              {"validation_samples", options.validation_samples, OptionRange::at_least(0)},
+                              {"validation_minutes", options.validation_minutes, OptionRange::at_least(0)},
+                              {"checkpoint_minutes", options.checkpoint_minutes, OptionRange::at_least(0)},
+                              {"log_steps", options.log_steps, OptionRange::at_least(1)}});
+  if (options.batch % options.threads != 0) throw UsageError("The batch must be a multiple of the threads.");
 }
 
 double learning_rate(const TrainingOptions& o, std::uint64_t step) {
@@ -375,7 +395,7 @@ TrainingResult Trainer::run() {
 }  // namespace
 
 TrainingResult train_completion(const SampleProvider& provider, const TrainingOptions& options) {
-  check_options(options);
+  require_in_range(options);
   require_training_folder(options.folder, options.resume);
   // OpenMP's threads would wait in busy loops between the few moments when they have work.
   const TensorThreads one_thread(1);

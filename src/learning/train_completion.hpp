@@ -34,6 +34,9 @@ struct ProcessOptions {
   std::string first_address = "127.0.0.1:29500";  ///< HOST:PORT where the first one listens; all must reach each other
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const ProcessOptions& options);
+
 /// Settings of `train_completion`.
 struct TrainingOptions {
   CompletionShape shape;

@@ -13,6 +13,7 @@
 #include <numbers>
 #include <random>
 
+#include "base/option_range.hpp"
 #include "learning/checkpoint.hpp"
 #include "learning/diffusion_net.hpp"
 #include "learning/optimiser.hpp"
@@ -29,14 +30,26 @@ using Clock = std::chrono::steady_clock;
 
 double minutes_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count() / 60; }
 
-void check_options(const SurfaceTrainingOptions& o) {
-  check_surface_shape(o.shape);
-  const auto share = [](double x) { return x >= 0 && x <= 1; };
-  const bool good = o.batch >= 1 && o.threads >= 1 && o.batch % o.threads == 0 && o.samples >= 1 && o.pool >= 1 &&
-                    o.pool < first_validation_sample && o.hours >= 0 && o.learning_rate > 0 && share(o.lowest_rate) &&
-                    o.warm_up >= 0 && o.weight_decay >= 0 && o.gradient_clip > 0 && share(o.average_decay) &&
-                    o.tilt_radians >= 0 && o.scale_deviation >= 0 && o.validation_samples >= 0 && o.log_steps >= 1;
-  if (!good) throw UsageError("A training option is out of range (the batch must be a multiple of the threads).");
+void require_in_range(const SurfaceTrainingOptions& options) {
+  check_surface_shape(options.shape);
+  require_ranges("training", {{"batch", options.batch, OptionRange::at_least(1)},
+                              {"threads", options.threads, OptionRange::at_least(1).at_most(options.batch)},
+                              {"samples", options.samples, OptionRange::at_least(1)},
+                              {"pool", options.pool, OptionRange::at_least(1).below(first_validation_sample)},
+                              {"hours", options.hours, OptionRange::at_least(0)},
+                              {"learning_rate", options.learning_rate, OptionRange::above(0)},
+                              {"lowest_rate", options.lowest_rate, share_range},
+                              {"warm_up", options.warm_up, OptionRange::at_least(0)},
+                              {"weight_decay", options.weight_decay, OptionRange::at_least(0)},
+                              {"gradient_clip", options.gradient_clip, OptionRange::above(0)},
+                              {"average_decay", options.average_decay, share_range},
+                              {"tilt_radians", options.tilt_radians, OptionRange::at_least(0)},
+                              {"scale_deviation", options.scale_deviation, OptionRange::at_least(0)},
+                              {"validation_samples", options.validation_samples, OptionRange::at_least(0)},
+                              {"validation_minutes", options.validation_minutes, OptionRange::at_least(0)},
+                              {"checkpoint_minutes", options.checkpoint_minutes, OptionRange::at_least(0)},
+                              {"log_steps", options.log_steps, OptionRange::at_least(1)}});
+  if (options.batch % options.threads != 0) throw UsageError("The batch must be a multiple of the threads.");
 }
 
 double learning_rate(const SurfaceTrainingOptions& o, std::uint64_t step) {
@@ -327,7 +340,7 @@ SurfaceTrainingResult SurfaceTrainer::run() {
 }  // namespace
 
 SurfaceTrainingResult train_surface(const SurfaceProvider& provider, const SurfaceTrainingOptions& options) {
-  check_options(options);
+  require_in_range(options);
   require_training_folder(options.folder, options.resume);
   const TensorThreads one_thread(1);
   return SurfaceTrainer(provider, options).run();

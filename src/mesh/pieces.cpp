@@ -3,6 +3,7 @@
 
 #include "mesh/pieces.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
@@ -73,6 +74,13 @@ bool can_be_sorted(const TriangleMesh& mesh) {
   });
 }
 
+void require_in_range(const PieceOptions& options) {
+  require_ranges("sorting pieces", {{"speck_area", options.speck_area, OptionRange::at_least(0).below(1)},
+                                    {"speck_triangles", options.speck_triangles, OptionRange::at_least(0).below(1)},
+                                    {"all_specks", options.all_specks, OptionRange::at_least(0).below(1)},
+                                    {"like_share", options.like_share, OptionRange::above(0).at_most(1)}});
+}
+
 }  // namespace
 
 std::size_t Pieces::count(PieceKind kind) const {
@@ -80,6 +88,7 @@ std::size_t Pieces::count(PieceKind kind) const {
 }
 
 Pieces sort_pieces(const TriangleMesh& mesh, const PieceOptions& options) {
+  require_in_range(options);
   const ConnectedComponents components = connected_components(mesh);
   Pieces pieces{components.of_triangle, {}};
   std::vector<double> area(static_cast<std::size_t>(components.count), 0), triangles = area;
@@ -121,6 +130,7 @@ std::string describe_pieces(const TriangleMesh& mesh, const Pieces& pieces) {
 }
 
 RepairedMesh drop_specks(const TriangleMesh& mesh, const PieceOptions& options) {
+  require_in_range(options);
   std::vector<bool> keep(mesh.triangles.size(), true);
   RepairStep specks{"speck dropped", {}, {}};
   if (can_be_sorted(mesh)) {

@@ -8,6 +8,7 @@
 
 #include "mesh/repair.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
@@ -486,9 +487,18 @@ class Repair {
   std::vector<RepairStep> steps_;
 };
 
+void require_in_range(const RepairOptions& options) {
+  require_in_range(options.seam);
+  require_ranges("a repair", {{"spike_height", options.spike_height, OptionRange::above(0)},
+                              {"spike_least_mm", options.spike_least_mm, OptionRange::at_least(0)},
+                              {"most_cut_share", options.most_cut_share, share_range},
+                              {"rounds", options.rounds, OptionRange::at_least(1)}});
+}
+
 }  // namespace
 
 RepairedMesh repair(const TriangleMesh& mesh, const RepairOptions& options) {
+  require_in_range(options);
   require_valid_indices(mesh);
   require_finite(mesh.vertices);
   return Repair(mesh, options).run();

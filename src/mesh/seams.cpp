@@ -6,6 +6,7 @@
 
 #include "mesh/seams.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/nearest_vertex.hpp"
 
@@ -94,7 +95,13 @@ void keep_what_closes(const Border& border, std::vector<int>& target) {
 
 }  // namespace
 
+void require_in_range(const SeamOptions& options) {
+  require_ranges("a seam", {{"most_mm", options.most_mm, OptionRange::at_least(0)},
+                            {"edge_share", options.edge_share, OptionRange::at_least(0).below(0.5)}});
+}
+
 Seams find_seams(const TriangleMesh& mesh, const SeamOptions& options) {
+  require_in_range(options);
   const Border border = find_border(mesh);
   Seams seams;
   if (border.vertices.empty()) {

@@ -15,6 +15,9 @@ struct SeamOptions {
                              ///< so that no triangle loses a side
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const SeamOptions& options);
+
 /// Which border vertices are the same place on both sides of a seam.
 struct Seams {
   std::vector<int> target;  ///< per vertex the lower one that is to take its place, or itself

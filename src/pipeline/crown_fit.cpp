@@ -7,6 +7,7 @@
 
 #include "pipeline/crown_fit.hpp"
 
+#include "base/option_range.hpp"
 #include "fusion/crown_border.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/closest_point.hpp"
@@ -298,9 +299,17 @@ int refine(TriangleMesh& surface, const TriangleMesh& crown, const CrownSurface&
   return static_cast<int>(surface.vertices.size() - first_added);
 }
 
+void require_in_range(const CrownFitOptions& options) {
+  require_ranges("the fit to the crown", {{"tolerance", options.tolerance, OptionRange::above(0)},
+                                          {"reach", options.reach, OptionRange::above(0)},
+                                          {"fading_rings", options.fading_rings, OptionRange::at_least(0)},
+                                          {"most_rounds", options.most_rounds, OptionRange::at_least(0)}});
+}
+
 }  // namespace
 
 CrownFit fit_to_crown(TriangleMesh& surface, const TriangleMesh& crown, const CrownFitOptions& options) {
+  require_in_range(options);
   const CrownSurface drawn_to(crown, options.reach);
   const TriangleMesh before = surface;
   CrownFit fit;

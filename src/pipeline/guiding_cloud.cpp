@@ -8,6 +8,7 @@
 
 #include "pipeline/guiding_cloud.hpp"
 
+#include "base/option_range.hpp"
 #include "fusion/crown_border.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/geometry.hpp"
@@ -138,10 +139,22 @@ void smooth(OrientedPoints& cloud, int neighbours, int rounds) {
   }
 }
 
+void require_in_range(const GuidingCloudOptions& options) {
+  require_ranges("the guiding cloud",
+                 {{"crown_spacing", options.crown_spacing, OptionRange::above(0)},
+                  {"orientation_spacing", options.orientation_spacing, OptionRange::above(0)},
+                  {"crown_confidence", options.crown_confidence, OptionRange::above(0)},
+                  {"gap", options.gap, OptionRange::at_least(0)},
+                  {"correction_reach", options.correction_reach, OptionRange::above(0)},
+                  {"smoothing_neighbours", options.smoothing_neighbours, OptionRange::at_least(12)},
+                  {"smoothing_rounds", options.smoothing_rounds, OptionRange::at_least(0)}});
+}
+
 }  // namespace
 
 GuidingCloud assemble_guiding_cloud(const TriangleMesh& crown, const OrientedPoints& predicted,
                                     const GuidingCloudOptions& options) {
+  require_in_range(options);
   SortedPrediction sorted = sort_prediction(crown, predicted, options.gap);
   if (sorted.beyond.points.size() < 32) throw NoResultError("The network predicts no root beyond this crown.");
   correct(sorted.beyond.points, sorted.on_crown, options.correction_reach);

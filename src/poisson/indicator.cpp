@@ -14,6 +14,7 @@
 #include <functional>
 #include <numeric>
 
+#include "base/option_range.hpp"
 #include "poisson/bspline.hpp"
 #include "poisson/multigrid.hpp"
 #include "poisson/normal_field.hpp"
@@ -26,22 +27,6 @@ namespace {
 
 constexpr int side = SplineLevel::side;
 constexpr double largest_directory = 3e7;  // blocks that the finest level would have if it were complete
-
-void check_options(const IndicatorOptions& options) {
-  const auto require = [](bool holds, const char* sentence) {
-    if (!holds) throw UsageError(sentence);
-  };
-  require(options.spacing > 0.01 && options.spacing <= 10.0,
-          "The indicator's spacing must lie between 0.01 and 10 mm.");
-  require(options.degree == 1 || options.degree == 2, "The indicator's degree must be 1 or 2.");
-  require(options.screening >= 0.0 && std::isfinite(options.screening), "The screening must be a number from 0 on.");
-  require(options.margin > 0.0 && options.margin < 1e3, "The indicator's margin must lie between 0 and 1000 mm.");
-  require(options.samples_per_cell > 0.0 && std::isfinite(options.samples_per_cell),
-          "The number of samples per cell must be positive.");
-  require(options.neighbours >= 3 && options.neighbours <= 100, "The number of neighbours must lie between 3 and 100.");
-  require(options.tolerance > 0.0 && options.tolerance < 1.0, "The solver's tolerance must lie between 0 and 1.");
-  require(options.max_cycles >= 1, "The solver needs at least one cycle.");
-}
 
 /// The samples with unit normals.
 OrientedPoints checked_samples(const OrientedPoints& samples, std::span<const double> weights) {
@@ -144,6 +129,17 @@ double weighted_mean(const IndicatorFunction& function, const std::vector<Point>
 
 }  // namespace
 
+void require_in_range(const IndicatorOptions& options) {
+  require_ranges("the indicator function", {{"spacing", options.spacing, OptionRange::above(0.01).at_most(10)},
+                                            {"degree", options.degree, OptionRange::at_least(1).at_most(2)},
+                                            {"screening", options.screening, OptionRange::at_least(0)},
+                                            {"margin", options.margin, OptionRange::above(0).below(1000)},
+                                            {"samples_per_cell", options.samples_per_cell, OptionRange::above(0)},
+                                            {"neighbours", options.neighbours, OptionRange::at_least(3).at_most(100)},
+                                            {"tolerance", options.tolerance, OptionRange::above(0).below(1)},
+                                            {"max_cycles", options.max_cycles, OptionRange::at_least(1)}});
+}
+
 void IndicatorFunction::store(const std::vector<SplineLevel>& levels, const std::vector<double>& coefficients) {
   const std::vector<double> sums = accumulated(levels, coefficients);
   const int wide = side + degree_;
@@ -237,7 +233,7 @@ Eigen::Vector3d IndicatorFunction::gradient(const Point& p) const { return evalu
 
 IndicatorFunction solve_indicator(const OrientedPoints& samples, std::span<const double> weights,
                                   const IndicatorOptions& options) {
-  check_options(options);
+  require_in_range(options);
   const OrientedPoints unit = checked_samples(samples, weights);
   LevelOptions level_options;
   level_options.degree = options.degree;

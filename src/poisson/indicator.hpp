@@ -28,6 +28,9 @@ struct IndicatorOptions {
   int max_cycles = 60;            ///< >= 1: multigrid cycles before giving up
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const IndicatorOptions& options);
+
 /// What the solver did.
 struct IndicatorStatistics {
   int cycles = 0;                    ///< multigrid cycles

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/option_range.hpp"
 #include "poisson/neighbours.hpp"
 #include "poisson/tangent_planes.hpp"
 #include "rhizodont/error.hpp"
@@ -27,12 +28,15 @@ struct Edge {
   double sign;    // 1 if the planes' normals point to the same side, -1 if not
 };
 
+void require_in_range(const OrientationOptions& options) {
+  require_ranges("orienting normals", {{"neighbours", options.neighbours, OptionRange::at_least(4).at_most(100)},
+                                       {"hint_trust", options.hint_trust, share_range},
+                                       {"blend", options.blend, share_range}});
+}
+
 std::vector<Eigen::Vector3d> checked_hints(std::span<const Point> points, std::span<const Eigen::Vector3d> hints,
                                            const OrientationOptions& options) {
-  if (options.neighbours < 4 || options.neighbours > 100)
-    throw UsageError("The number of neighbours must lie between 4 and 100.");
-  if (!(options.hint_trust >= 0.0 && options.hint_trust <= 1.0) || !(options.blend >= 0.0 && options.blend <= 1.0))
-    throw UsageError("The trust in hints and their blending must lie between 0 and 1.");
+  require_in_range(options);
   if (points.size() < 4) throw InputError("Fewer than 4 points do not tell a surface.");
   if (!hints.empty() && hints.size() != points.size())
     throw InputError(fmt::format("There are {} points but {} hints.", points.size(), hints.size()));

@@ -6,6 +6,7 @@
 
 #include "skirt/cap.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
@@ -155,6 +156,14 @@ double depth_behind_rim(const TriangleMesh& mesh, const std::vector<bool>& is_ca
   return area > 0 && length > 0 ? inner / area - rim / length : 0;
 }
 
+void require_in_range(const CapOptions& options) {
+  require_ranges("a cap", {{"facing", options.facing, OptionRange::above(-1).below(1)},
+                           {"ridge_angle", options.ridge_angle, OptionRange::above(0)},
+                           {"least_flatness", options.least_flatness, share_range},
+                           {"least_rim", options.least_rim, OptionRange::at_least(0)},
+                           {"least_share", options.least_share, share_range}});
+}
+
 }  // namespace
 
 double outline_area(const TriangleMesh& mesh, const Eigen::Vector3d& axis) {
@@ -204,6 +213,7 @@ Cap describe_cap(const TriangleMesh& closed_crown, std::vector<bool> is_cap, con
 }
 
 Cap find_cap(const TriangleMesh& closed_crown, const Eigen::Vector3d& growth_axis, const CapOptions& options) {
+  require_in_range(options);
   std::vector<bool> is_cap = cut_off_cap(closed_crown, growth_axis, options);
   keep_one_region(closed_crown, is_cap, true);
   keep_one_region(closed_crown, is_cap, false);
@@ -211,6 +221,7 @@ Cap find_cap(const TriangleMesh& closed_crown, const Eigen::Vector3d& growth_axi
 }
 
 void require_cap(const Cap& cap, const CapOptions& options) {
+  require_in_range(options);
   if (cap.flatness >= options.least_flatness && cap.share >= options.least_share && cap.rim >= options.least_rim)
     return;
   constexpr double hollow = 0.7;  // mm

@@ -8,6 +8,7 @@
 
 #include "skirt/made_cap.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "skirt/cap.hpp"
@@ -383,9 +384,21 @@ double area_of_cap(const Closed& crown, const Mask& region, const MadeCapOptions
   return share >= options.least_share ? area : 0;
 }
 
+void require_in_range(const MadeCapOptions& options) {
+  require_ranges("a made cap", {{"least_fan", options.least_fan, OptionRange::above(8)},
+                                {"long_edge", options.long_edge, OptionRange::above(1)},
+                                {"flat_mm", options.flat_mm, OptionRange::above(0)},
+                                {"least_rim", options.least_rim, OptionRange::at_least(3)},
+                                {"least_share", options.least_share, OptionRange::above(0).at_most(1)},
+                                {"least_flatness", options.least_flatness, share_range},
+                                {"least_roundness", options.least_roundness, OptionRange::at_least(0).below(1)},
+                                {"least_crown", options.least_crown, OptionRange::at_least(0).below(1)}});
+}
+
 }  // namespace
 
 std::optional<std::vector<bool>> find_made_cap(const TriangleMesh& closed_crown, const MadeCapOptions& options) {
+  require_in_range(options);
   const Closed crown(closed_crown);
   Mask best;
   double largest = 0;

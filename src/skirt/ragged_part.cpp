@@ -6,6 +6,7 @@
 // never falls as a surface grows, so that the vertex that closes a handle is found by bisection.
 #include "skirt/ragged_part.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/border_pieces.hpp"
 #include "mesh/diagnosis.hpp"
@@ -173,11 +174,16 @@ class RaggedCrown {
   std::vector<bool> gone_;     // per vertex
 };
 
+void require_in_range(const RaggedPartOptions& options) {
+  require_ranges("a ragged part", {{"depth", options.depth, OptionRange::at_least(0)},
+                                   {"rounds", options.rounds, OptionRange::at_least(1)},
+                                   {"slit", options.slit, share_range}});
+}
+
 }  // namespace
 
 std::vector<bool> triangles_without_slits(const TriangleMesh& open_crown, const RaggedPartOptions& options) {
-  if (!(options.depth >= 0) || !(options.slit >= 0 && options.slit <= 1))
-    throw UsageError("A ragged part has a depth of 0 mm or more, slits a width of 0 to 1 edges.");
+  require_in_range(options);
   const std::vector<BorderPiece> pieces = border_pieces(open_crown);
   if (pieces.empty()) return std::vector<bool>(open_crown.triangles.size(), true);
   const std::vector<double> depth =
@@ -257,8 +263,7 @@ std::vector<bool> sound_triangles(const TriangleMesh& crown) {
 }
 
 std::vector<bool> triangles_without_ragged_defects(const TriangleMesh& open_crown, const RaggedPartOptions& options) {
-  if (!(options.depth >= 0) || options.rounds < 1)
-    throw UsageError("A ragged part has a depth of 0 mm or more, and there is at least one round.");
+  require_in_range(options);
   RaggedCrown crown(open_crown, options);
   for (int round = 0; round < options.rounds && crown.drop_some(); ++round) {
   }

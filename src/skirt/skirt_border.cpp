@@ -6,6 +6,7 @@
 //   2003: boundaries between regions of a mesh as minimum cuts along bent edges.
 #include "skirt/skirt_border.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/border_pieces.hpp"
 #include "mesh/disjoint_sets.hpp"
@@ -136,14 +137,18 @@ std::vector<bool> cut(const std::vector<float>& confidence, const std::vector<do
   return is_skirt;
 }
 
+void require_in_range(const SkirtBorderOptions& options) {
+  require_ranges("a skirt's border", {{"threshold", options.threshold, OptionRange::above(0).below(1)},
+                                      {"smoothness", options.smoothness, OptionRange::at_least(0)},
+                                      {"crease", options.crease, OptionRange::above(0)},
+                                      {"least_kept", options.least_kept, share_range}});
+}
+
 }  // namespace
 
 std::vector<bool> tooth_triangles(const TriangleMesh& crown, const std::vector<float>& confidence,
                                   const SkirtBorderOptions& options) {
-  if (!(options.threshold > 0 && options.threshold < 1))
-    throw UsageError("The confidence for a skirt lies between 0 and 1.");
-  if (!(options.smoothness >= 0) || !(options.crease > 0))
-    throw UsageError("A skirt's border needs a smoothness >= 0.");
+  require_in_range(options);
   if (confidence.size() != crown.vertices.size())
     throw UsageError("There must be one confidence for each vertex of the crown.");
   const std::vector<double> areas = vertex_areas(crown);

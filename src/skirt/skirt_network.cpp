@@ -4,6 +4,7 @@
 // Decimation: P. Lindstrom, G. Turk, "Fast and memory efficient polygonal simplification", 1998 (CGAL).
 #include "skirt/skirt_network.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/diagnosis.hpp"
@@ -56,7 +57,7 @@ TriangleMesh decimated(const TriangleMesh& crown, std::size_t vertices) {
 
 std::vector<float> skirt_confidence(const TriangleMesh& crown, const SurfaceNetwork& network,
                                     const SkirtNetworkOptions& options) {
-  if (options.most_vertices < 200) throw UsageError("A skirt is looked for among 200 vertices at least.");
+  require_ranges("the search for a skirt", {{"most_vertices", options.most_vertices, OptionRange::at_least(200)}});
   const auto most = static_cast<std::size_t>(options.most_vertices);
   const int eigenvectors = network.shape().eigenvectors;
   if (crown.vertices.size() <= most) return network.confidence(skirt_features(crown, eigenvectors));

@@ -6,6 +6,7 @@
 //   normals: those of a folded flap say nothing of the tooth, but their difference says that it is folded.
 #include "skirt/spikes.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
@@ -43,14 +44,17 @@ std::vector<bool> tips(const TriangleMesh& mesh, const SpikeOptions& options) {
   return tip;
 }
 
+void require_in_range(const SpikeOptions& options) {
+  require_ranges("a spike", {{"tip", options.tip, OptionRange::at_least(0).at_most(360)},
+                             {"flap", options.flap, OptionRange::at_least(0).at_most(180)},
+                             {"fin", options.fin, OptionRange::above(0).at_most(180)},
+                             {"rounds", options.rounds, OptionRange::at_least(1)}});
+}
+
 }  // namespace
 
 std::vector<bool> triangles_without_spikes(const TriangleMesh& crown, const SpikeOptions& options) {
-  if (!(options.tip >= 0 && options.tip <= 360) || !(options.flap >= 0 && options.flap <= 180) ||
-      !(options.fin > 0 && options.fin <= 180) || options.rounds < 1)
-    throw UsageError(
-        "The tip of a spike has 0 to 360 degrees, a flap's and the edge of a fin 0 to 180; there is at least one "
-        "round.");
+  require_in_range(options);
   std::vector<bool> keep(crown.triangles.size(), true);
   for (int round = 0; round < options.rounds; ++round) {
     const Submesh part = submesh(crown, keep);

@@ -20,6 +20,7 @@
 
 #include "voronoi/delaunay_mesh.hpp"
 
+#include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
@@ -333,7 +334,14 @@ std::vector<std::array<int, 2>> non_delaunay_edges(const TriangleMesh& mesh, dou
   return found;
 }
 
+void require_in_range(const DelaunayMeshOptions& options) {
+  require_ranges("a Delaunay mesh", {{"angle_slack", options.angle_slack, OptionRange::at_least(0)},
+                                     {"shortest_piece", options.shortest_piece, OptionRange::at_least(0)},
+                                     {"steiner_limit", options.steiner_limit, OptionRange::at_least(0)}});
+}
+
 DelaunayMesh make_delaunay_mesh(const TriangleMesh& mesh, const DelaunayMeshOptions& options) {
+  require_in_range(options);
   return DelaunayBuilder(mesh, options).run();
 }
 

@@ -15,6 +15,9 @@ struct DelaunayMeshOptions {
   double steiner_limit = 8.0;    ///< at most this many Steiner points per input vertex, >= 0
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const DelaunayMeshOptions& options);
+
 /// A mesh made Delaunay by Steiner points on its edges; the surface is the same, the first vertices are the input's.
 struct DelaunayMesh {
   TriangleMesh mesh;

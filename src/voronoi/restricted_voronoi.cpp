@@ -9,6 +9,7 @@
 
 #include "voronoi/restricted_voronoi.hpp"
 
+#include "base/option_range.hpp"
 #include "rhizodont/error.hpp"
 #include "voronoi/cell_clipper.hpp"
 
@@ -119,7 +120,7 @@ bool is_usable(const Point& p) { return (p.array().abs() < 1e45).all(); }
 
 void check_input(const std::vector<Point>& sites, const TriangleMesh& surface,
                  const RestrictedVoronoiOptions& options) {
-  if (options.neighbours < 1) throw UsageError("A cell needs at least one neighbour to begin with.");
+  require_in_range(options);
   if (sites.empty()) throw InputError("There are no sites to make a Voronoi diagram of.");
   if (surface.triangles.empty()) throw InputError("The guiding surface has no triangles.");
   std::vector<std::int64_t> bad;
@@ -131,8 +132,6 @@ void check_input(const std::vector<Point>& sites, const TriangleMesh& surface,
   if (options.density.empty()) return;
   if (options.density.size() != surface.vertices.size())
     throw UsageError("A density is needed for each vertex of the surface, or for none.");
-  for (const double d : options.density)
-    if (!(d >= 0 && std::isfinite(d))) throw UsageError("Densities must be finite and not negative.");
 }
 
 void add_moments(const std::vector<BlockResult>& blocks, const std::vector<Point>& sites,
@@ -161,6 +160,12 @@ void add_moments(const std::vector<BlockResult>& blocks, const std::vector<Point
 Triangle lowest_first(Triangle triangle) {
   std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()), triangle.end());
   return triangle;
+}
+
+void require_in_range(const RestrictedVoronoiOptions& options) {
+  require_ranges("a restricted Voronoi diagram", {{"neighbours", options.neighbours, OptionRange::at_least(1)}});
+  for (const double d : options.density)
+    require_ranges("a restricted Voronoi diagram", {{"density", d, OptionRange::at_least(0)}});
 }
 
 RestrictedVoronoi restricted_voronoi(const std::vector<Point>& sites, const TriangleMesh& surface,

@@ -15,6 +15,9 @@ struct RestrictedVoronoiOptions {
       density;  ///< for masses and centroids: per vertex of the surface, >= 0, linear in between; empty: 1
 };
 
+/// Throws UsageError for an option out of its range.
+void require_in_range(const RestrictedVoronoiOptions& options);
+
 /// The Voronoi diagram of sites restricted to a surface, seen through its dual.
 struct RestrictedVoronoi {
   /// The dual (restricted Delaunay triangles): one per point of the surface where three cells meet, counterclockwise
