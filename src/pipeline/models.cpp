@@ -18,9 +18,10 @@ CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
   auto content = std::make_unique<Content>(Content{load_atlas(folder / "atlas.safetensors"),
                                                    CompletionNetwork::load(folder / "completion.safetensors"),
                                                    std::nullopt, std::nullopt});
-  if (const auto skirt = folder / "skirt.safetensors"; std::filesystem::exists(skirt))
+  std::error_code ignored;
+  if (const auto skirt = folder / "skirt.safetensors"; std::filesystem::exists(skirt, ignored))
     content->skirt = SurfaceNetwork::load(skirt);
-  if (const auto likeness = folder / "likeness.safetensors"; std::filesystem::exists(likeness))
+  if (const auto likeness = folder / "likeness.safetensors"; std::filesystem::exists(likeness, ignored))
     content->likeness = load_likeness(likeness);
   return CompletionModels(std::move(content));
 }
