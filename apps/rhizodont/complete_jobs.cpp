@@ -6,6 +6,7 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/output_files.hpp"
+#include "rhizodont/tooth_file.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +14,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <set>
+#include <map>
 
 namespace rhizodont::command_line {
 namespace {
@@ -65,41 +66,54 @@ CrownJob job_of(const CompleteFiles& files, const std::string& crown, std::vecto
   return job;
 }
 
+/// What several crowns give goes into a folder, also one that is still to be made. `name` may be empty.
+void require_folder(const std::string& name, const char* what, const char* option) {
+  static const std::vector<std::string> of_files{".ply", ".stl", ".obj", ".glb", ".off",
+                                                 ".vtp", ".vtk", ".gz",  ".json"};
+  if (name.empty() || is_folder(name)) return;
+  if (is_stream(standard_output_or(name)))
+    throw UsageError(fmt::format("Several {} cannot go to one stream: give a folder ({} FOLDER).", what, option));
+  std::error_code ignored;
+  const bool is_there = fs::exists(name, ignored);
+  const bool named_so = std::find(of_files.begin(), of_files.end(), fs::path(name).extension()) != of_files.end();
+  if (is_there || named_so)
+    throw UsageError(fmt::format("{} is {} file; the {} of several crowns need a folder ({} FOLDER).", name,
+                                 is_there ? "a" : "the name of a", what, option));
+}
+
 void require_counts(const CompleteFiles& files) {
   if (files.candidates < 1 || files.candidates > 9) throw UsageError("There can be 1 to 9 candidates.");
   if (files.crowns.size() > 1 && files.fdi)
     throw UsageError("--fdi is of one crown; of several, the number is taken from the file's name.");
   if (std::count(files.crowns.begin(), files.crowns.end(), "-") > 1)
     throw UsageError("Standard input (-) can be read only once.");
-  if (files.crowns.size() > 1 && files.output == "-")
-    throw UsageError("Several teeth cannot go to standard output: give a folder (-o FOLDER).");
   if (files.candidates > 1 && (is_standard_output(standard_output_or(files.output)) || files.report == "-"))
     throw UsageError("Several candidates cannot go to standard output: give a file (-o FILE).");
-  std::error_code ignored;
-  if (files.crowns.size() > 1 && fs::exists(files.output, ignored) && !fs::is_directory(files.output, ignored))
-    throw UsageError(fmt::format("{} is a file; the teeth of {} crowns need a folder (-o FOLDER).", files.output,
-                                 files.crowns.size()));
+  if (files.crowns.size() > 1) {
+    require_folder(files.output, "teeth", "-o");
+    require_folder(files.report, "reports", "--report");
+    require_folder(files.confidence, "confidences", "--skirt-confidence");
+  }
+}
+
+/// Two crowns whose files have one name would become one tooth.
+void require_own_names(const std::vector<CrownJob>& jobs) {
+  std::map<fs::path, const CrownJob*> first;
+  for (const CrownJob& job : jobs) {
+    const auto [same, is_new] = first.emplace(job.teeth.front(), &job);
+    if (is_new) continue;
+    if (same->second->crown == job.crown) throw UsageError(fmt::format("{} is given twice.", job.crown));
+    throw UsageError(
+        fmt::format("{} and {} would both become {}: rename one of the crowns, or complete each into a folder of its "
+                    "own.",
+                    same->second->crown, job.crown, job.teeth.front().string()));
+  }
 }
 
 }  // namespace
 
 fs::path name_with_format(const fs::path& place, const std::string& format) {
   return is_stream(place) && !place.has_extension() ? fs::path("tooth." + format) : place;
-}
-
-std::optional<int> fdi_in_name(const fs::path& file) {
-  const std::string name = file.stem().string();
-  std::set<int> found;
-  for (std::size_t begin = 0; begin < name.size();) {
-    std::size_t end = begin;
-    while (end < name.size() && name[end] >= '0' && name[end] <= '9') ++end;
-    if (end - begin == 2) {
-      const int quadrant = name[begin] - '0', place = name[begin + 1] - '0';
-      if (quadrant >= 1 && quadrant <= 4 && place >= 1 && place <= 8) found.insert(10 * quadrant + place);
-    }
-    begin = std::max(end, begin + 1);
-  }
-  return found.size() == 1 ? std::optional(*found.begin()) : std::nullopt;
 }
 
 std::vector<CrownJob> plan_complete(const CompleteFiles& files, const fs::path& models) {
@@ -116,6 +130,7 @@ std::vector<CrownJob> plan_complete(const CompleteFiles& files, const fs::path& 
     outputs.insert(outputs.end(), job.reports.begin(), job.reports.end());
     if (!job.confidence.empty()) outputs.push_back(job.confidence);
   }
+  require_own_names(jobs);
   require_separate_files(inputs, outputs);
   require_new(made_up, files.overwrite);
   require_safe_outputs(inputs, outputs);
