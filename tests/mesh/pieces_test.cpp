@@ -42,7 +42,7 @@ TEST(Pieces, SpecksAreSmallOrASingleTriangleWhateverItsArea) {
 
 TEST(Pieces, FewTrianglesOfACrownsAreaAreNoSpeck) {
   // a coarse crown beside a fine one
-  const TriangleMesh mesh = test::together(test::dome(5, 4), test::dome(1, 4), Point(9, 0, 0));
+  const TriangleMesh mesh = test::together(test::dome(5, 4), test::dome(0, 4), Point(9, 0, 0));
   EXPECT_TRUE(drop_specks(mesh).steps.empty());
   EXPECT_NE(said_of(mesh).find("2 crowns"), std::string::npos);
 }
@@ -50,7 +50,7 @@ TEST(Pieces, FewTrianglesOfACrownsAreaAreNoSpeck) {
 TEST(Pieces, APatchBehindASeamIsNoSpeckHoweverSmall) {
   const TriangleMesh whole = test::dome(5, 4);
   std::vector<bool> in_patch(whole.triangles.size(), false), rest(whole.triangles.size(), true);
-  for (std::size_t t = 0; t < 8; ++t) in_patch[t] = true, rest[t] = false;
+  for (std::size_t t = 0; t < 4; ++t) in_patch[t] = true, rest[t] = false;
   const TriangleMesh patch = submesh(whole, in_patch).mesh, hole = submesh(whole, rest).mesh;
   EXPECT_TRUE(drop_specks(test::together(hole, patch, Point(1e-6, 0, 0))).steps.empty());
   EXPECT_TRUE(drop_specks(test::together(patch, hole, Point(1e-6, 0, 0))).steps.empty());
