@@ -79,16 +79,27 @@ void print_table(const CheckReport& report) {
   for (const std::string& failure : report.failures) fmt::print("- {}\n", failure);
 }
 
+/// Read once: a pipe gives its bytes only once.
+MeshFile read_crown(const std::string& path, std::string& sha256) {
+  try {
+    const std::string bytes = read_file_bytes(path);
+    sha256 = sha256_of_bytes(bytes);
+    return read_mesh(bytes, path);
+  } catch (const InputError& error) {
+    throw error.reworded(path + ": " + error.what());
+  }
+}
+
 void run(const CheckCommand& command) {
   std::vector<std::filesystem::path> inputs{command.crown, command.tooth};
   if (!command.report.empty()) inputs.emplace_back(command.report);
   require_safe_outputs(inputs, command.json.outputs());
-  const MeshFile crown = load_mesh(command.crown);
+  std::string sha256;
+  const MeshFile crown = read_crown(command.crown, sha256);
   const MeshFile tooth = load_mesh(command.tooth);
   CheckOptions options = command.options;
   if (!command.report.empty()) {
-    const ExcusedByReport excused =
-        excused_by_report(command.report, sha256_of_bytes(read_file_bytes(command.crown)), crown.file_vertices);
+    const ExcusedByReport excused = excused_by_report(command.report, sha256, crown.file_vertices);
     options = allowing_for(excused.repairs);
     options.least_kept_share = command.options.least_kept_share;
     options.dropped_vertices = excused.dropped_vertices;

@@ -19,8 +19,6 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <iostream>
-#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -78,7 +76,7 @@ void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::strin
   for (const RepairStep& step : r.repairs)
     fmt::print(out, "  repaired: {} ({} vertices, {} triangles)\n", step.action, step.vertices.size(),
                step.triangles.size());
-  for (const std::string& warning : r.warnings) fmt::print(out, "  note: {}\n", warning);
+  for (const std::string& warning : all_warnings(r)) fmt::print(out, "  note: {}\n", warning);
 }
 
 /// keep, auto, or the confidence from which a vertex is tooth.
@@ -124,6 +122,7 @@ class Completion {
 
   /// Completes them all; one that fails does not stop the others. The largest of their exit codes.
   int run() {
+    models_ = CompletionModels::load(models_folder_);  // not in a crown's name: no report is to say it was refused
     int worst = 0;
     std::size_t completed = 0;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
@@ -136,31 +135,43 @@ class Completion {
   }
 
  private:
-  int complete_and_say(const CrownJob& job, std::size_t place) {
+  /// What is known of a crown when it is given up.
+  struct Attempt {
+    CompleteOptions options;
     ReportedInput input;
-    std::vector<std::string> notes;  // of reading, for the report on a refused crown
+    std::vector<std::string> notes;  // of reading
+    bool is_read = false;
+  };
+
+  int complete_and_say(const CrownJob& job, std::size_t place) {
+    Attempt attempt;
     if (command_.name_in_report && job.crown != "-")
-      input.file_name = std::filesystem::path(job.crown).filename().string();
-    CompleteOptions options = command_.options;
-    options.fdi = job.fdi;
-    options.skirt = skirt_threshold(command_.skirt);
+      attempt.input.file_name = std::filesystem::path(job.crown).filename().string();
+    attempt.options = command_.options;
+    attempt.options.fdi = job.fdi;
+    attempt.options.skirt = skirt_threshold(command_.skirt);
     try {
-      complete_one(job, place, options, input, notes);
+      complete_one(job, place, attempt);
       return 0;
     } catch (const Error& error) {
       const bool reported =
           !job.reports.empty() && (error.code() == ErrorCode::unusable_input || error.code() == ErrorCode::no_result);
-      const int code = say(error, job, reported ? "see " + job.reports.front().string() : "");
-      return reported ? std::max(code, write_refusal(completion_refusal_report(error, options, input, notes), job))
-                      : code;
+      say(error_line(error, reported ? "see " + job.reports.front().string() : ""), job, !attempt.is_read);
+      const int code = static_cast<int>(error.code());
+      return reported ? std::max(code, write_refusal(error, attempt, job)) : code;
+    } catch (const std::exception& fault) {  // the other crowns may do
+      say(fault_line(fault), job, !attempt.is_read);
+      return static_cast<int>(ErrorCode::internal);
     }
   }
 
-  void complete_one(const CrownJob& job, std::size_t place, const CompleteOptions& options, ReportedInput& input,
-                    std::vector<std::string>& notes) {
-    MeshFile crown = read_crown(job, input);
+  void complete_one(const CrownJob& job, std::size_t place, Attempt& attempt) {
+    MeshFile crown = read_crown(job, attempt.input);
+    attempt.is_read = true;
     if (job.fdi_from_name) crown.notes.push_back(fmt::format("Tooth {}, taken from the file's name.", *job.fdi));
-    notes = crown.notes;
+    attempt.notes = crown.notes;
+    const CompleteOptions& options = attempt.options;
+    ReportedInput& input = attempt.input;
     if (command_.as_float) {
       const double moved = round_to_float(crown.mesh);
       if (moved > 0) input.rounded_mm = moved * options.millimetres_per_unit;
@@ -172,7 +183,6 @@ class Completion {
                       "rounded (--as-float).",
                       job.shown_crown(), job.teeth.front().string()));
     }
-    if (!models_) models_ = CompletionModels::load(models_folder_);
     const std::string before =
         jobs_.size() > 1 ? fmt::format("{} ({} of {}): ", job.shown_crown(), place + 1, jobs_.size()) : "";
     const ProgressCallback progress = progress_line(command_.quiet, before);
@@ -180,6 +190,9 @@ class Completion {
     try {
       candidates = complete_candidates(crown.mesh, *models_, command_.files.candidates, options, progress);
     } catch (const InputError& error) {
+      clear_line(progress);
+      throw in_terms_of_file(error, crown);
+    } catch (const NoResultError& error) {
       clear_line(progress);
       throw in_terms_of_file(error, crown);
     } catch (...) {
@@ -191,19 +204,16 @@ class Completion {
       for (CompletedTooth& tooth : candidates)
         tooth.record.warnings.push_back(fmt::format(
             "The crown's coordinates were rounded to float (--as-float), by {:.1g} mm at most.", *input.rounded_mm));
+    for (std::size_t i = 0; i < candidates.size(); ++i)
+      require_format_holds(candidates[i], name_with_format(job.teeth[i], command_.files.output_format));
     write_results(job, crown, candidates, input);
     if (!command_.quiet) print_results(job, candidates);
   }
 
   MeshFile read_crown(const CrownJob& job, ReportedInput& input) const {
-    try {
-      const std::string bytes =
-          job.crown == "-" ? std::string{std::istreambuf_iterator<char>(std::cin), {}} : read_file_bytes(job.crown);
-      input.sha256 = sha256_of_bytes(bytes);
-      return read_mesh(bytes, command_.format.empty() ? job.crown : command_.format);
-    } catch (const InputError& error) {
-      throw InputError(job.shown_crown() + ": " + error.what(), error.elements());
-    }
+    const std::string bytes = job.crown == "-" ? read_standard_input() : read_file_bytes(job.crown);
+    input.sha256 = sha256_of_bytes(bytes);
+    return read_mesh(bytes, command_.format.empty() ? job.crown : command_.format);
   }
 
   /// Their records refer to the crown's file from then on.
@@ -226,28 +236,29 @@ class Completion {
     for (std::size_t i = 0; i < candidates.size(); ++i) print_summary(words_, candidates[i], job.teeth[i].string());
   }
 
-  int say(const Error& error, const CrownJob& job, const std::string& where_all_are) const {
-    const std::string line = error_line(error, where_all_are);
-    const bool names_crown = jobs_.size() == 1 || line.find(job.shown_crown()) != std::string::npos;
-    fmt::print(stderr, "rhizodont: {}{}\n", names_crown ? "" : job.shown_crown() + ": ", line);
-    return static_cast<int>(error.code());
+  /// The crown's name goes to the screen alone: reports are passed on, and names tell of patients.
+  void say(const std::string& line, const CrownJob& job, bool is_about_file) const {
+    const bool needs_name = (is_about_file || jobs_.size() > 1) && line.find(job.shown_crown()) == std::string::npos;
+    fmt::print(stderr, "rhizodont: {}{}\n", needs_name ? job.shown_crown() + ": " : "", line);
   }
 
   /// The report says of a crown without a tooth why and where.
-  int write_refusal(const std::string& report, const CrownJob& job) const {
+  int write_refusal(const Error& error, const Attempt& attempt, const CrownJob& job) const {
     try {
-      write_output_files({{job.reports.front(), report}});
+      write_output_files(
+          {{job.reports.front(), completion_refusal_report(error, attempt.options, attempt.input, attempt.notes)}});
       return 0;
     } catch (const Error& unwritable) {
-      return say(unwritable, job, {});
+      say(error_line(unwritable), job, false);
+      return static_cast<int>(unwritable.code());
     }
   }
 
   const CompleteCommand& command_;
   std::filesystem::path models_folder_;
   std::vector<CrownJob> jobs_;
-  std::optional<CompletionModels> models_;  // loaded once a crown could be read
-  std::FILE* words_ = stdout;               // what is said to the user, so that it does not get into a mesh
+  std::optional<CompletionModels> models_;
+  std::FILE* words_ = stdout;  // what is said to the user, so that it does not get into a mesh
 };
 
 void run(const CompleteCommand& command) {

@@ -7,6 +7,7 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/output_files.hpp"
+#include "rhizodont/tooth_file.hpp"
 
 #include <fmt/format.h>
 
@@ -14,8 +15,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <regex>
-#include <set>
+#include <map>
 
 namespace rhizodont::command_line {
 namespace {
@@ -67,31 +67,48 @@ CrownJob job_of(const CompleteFiles& files, const std::string& crown, std::vecto
   return job;
 }
 
+/// What several crowns give goes into a folder, also one that is still to be made. `name` may be empty.
+void require_folder(const std::string& name, const char* what, const char* option) {
+  static const std::vector<std::string> of_files{".ply", ".stl", ".obj", ".glb", ".off",
+                                                 ".vtp", ".vtk", ".gz",  ".json"};
+  if (name.empty() || is_folder(name)) return;
+  if (is_stream(standard_output_or(name)))
+    throw UsageError(fmt::format("Several {} cannot go to one stream: give a folder ({} FOLDER).", what, option));
+  std::error_code ignored;
+  const bool is_there = fs::exists(name, ignored);
+  const bool named_so = std::find(of_files.begin(), of_files.end(), fs::path(name).extension()) != of_files.end();
+  if (is_there || named_so)
+    throw UsageError(fmt::format("{} is {} file; the {} of several crowns need a folder ({} FOLDER).", name,
+                                 is_there ? "a" : "the name of a", what, option));
+}
+
 void require_counts(const CompleteFiles& files) {
   if (files.candidates < 1 || files.candidates > 9) throw UsageError("There can be 1 to 9 candidates.");
   if (files.crowns.size() > 1 && files.fdi)
     throw UsageError("--fdi is of one crown; of several, the number is taken from the file's name.");
   if (std::count(files.crowns.begin(), files.crowns.end(), "-") > 1)
     throw UsageError("Standard input (-) can be read only once.");
-  if (files.crowns.size() > 1 && files.output == "-")
-    throw UsageError("Several teeth cannot go to standard output: give a folder (-o FOLDER).");
   if (files.candidates > 1 && (is_standard_output(standard_output_or(files.output)) || files.report == "-"))
     throw UsageError("Several candidates cannot go to standard output: give a file (-o FILE).");
-  std::error_code ignored;
-  if (files.crowns.size() > 1 && fs::exists(files.output, ignored) && !fs::is_directory(files.output, ignored))
-    throw UsageError(fmt::format("{} is a file; the teeth of {} crowns need a folder (-o FOLDER).", files.output,
-                                 files.crowns.size()));
+  if (files.crowns.size() > 1) {
+    require_folder(files.output, "teeth", "-o");
+    require_folder(files.report, "reports", "--report");
+    require_folder(files.confidence, "confidences", "--skirt-confidence");
+  }
 }
 
-/// The runs of digits in a name, but for dates (2026-11-27, 27.11.2026, 2026_11), whose days and months look like
-/// teeth.
-std::vector<std::string> numbers_in(std::string name) {
-  static const std::string year = "(19|20)[0-9]{2}", month = "(0[1-9]|1[0-2])", day = "(0[1-9]|[12][0-9]|3[01])",
-                           gap = "[-_. ]", before = "(^|[^0-9])", after = "(?![0-9])";
-  static const std::regex year_first(before + year + gap + month + "(" + gap + day + ")?" + after),
-      year_last(before + "(" + day + gap + ")?" + month + gap + year + after), digits("[0-9]+");
-  for (const std::regex& date : {year_first, year_last}) name = std::regex_replace(name, date, "$1");
-  return {std::sregex_token_iterator(name.begin(), name.end(), digits), std::sregex_token_iterator()};
+/// Two crowns whose files have one name would become one tooth.
+void require_own_names(const std::vector<CrownJob>& jobs) {
+  std::map<fs::path, const CrownJob*> first;
+  for (const CrownJob& job : jobs) {
+    const auto [same, is_new] = first.emplace(job.teeth.front(), &job);
+    if (is_new) continue;
+    if (same->second->crown == job.crown) throw UsageError(fmt::format("{} is given twice.", job.crown));
+    throw UsageError(
+        fmt::format("{} and {} would both become {}: rename one of the crowns, or complete each into a folder of its "
+                    "own.",
+                    same->second->crown, job.crown, job.teeth.front().string()));
+  }
 }
 
 void require_name_of_tooth(const fs::path& tooth, const CompleteFiles& files) {
@@ -111,16 +128,6 @@ fs::path name_with_format(const fs::path& place, const std::string& format) {
   return is_stream(place) && !place.has_extension() ? fs::path("tooth." + format) : place;
 }
 
-std::optional<int> fdi_in_name(const fs::path& file) {
-  std::set<int> found;
-  for (const std::string& number : numbers_in(stem_of(file.string()))) {
-    if (number.size() != 2) continue;
-    const int quadrant = number[0] - '0', place = number[1] - '0';
-    if (quadrant >= 1 && quadrant <= 4 && place >= 1 && place <= 8) found.insert(10 * quadrant + place);
-  }
-  return found.size() == 1 ? std::optional(*found.begin()) : std::nullopt;
-}
-
 std::vector<CrownJob> plan_complete(const CompleteFiles& files, const fs::path& models) {
   require_counts(files);
   std::vector<CrownJob> jobs;
@@ -135,6 +142,7 @@ std::vector<CrownJob> plan_complete(const CompleteFiles& files, const fs::path& 
     outputs.insert(outputs.end(), job.reports.begin(), job.reports.end());
     if (!job.confidence.empty()) outputs.push_back(job.confidence);
   }
+  require_own_names(jobs);
   require_separate_files(inputs, outputs);
   require_new(made_up, files.overwrite);
   require_safe_outputs(inputs, outputs);

@@ -42,8 +42,4 @@ std::vector<CrownJob> plan_complete(const CompleteFiles& files, const std::files
 /// The name that says in which format a mesh goes there: the place's own, or one with the ending of `format`.
 std::filesystem::path name_with_format(const std::filesystem::path& place, const std::string& format);
 
-/// The FDI number of a permanent tooth that a file's name holds, if it holds just one: two digits with none beside them
-/// that are no part of a date.
-std::optional<int> fdi_in_name(const std::filesystem::path& file);
-
 }  // namespace rhizodont::command_line

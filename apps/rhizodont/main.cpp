@@ -14,9 +14,9 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
-#include <new>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace {
@@ -24,6 +24,7 @@ namespace {
 using rhizodont::ErrorCode;
 using rhizodont::command_line::closest_word;
 using rhizodont::command_line::error_line;
+using rhizodont::command_line::fault_line;
 
 int report(ErrorCode code, const std::string& sentence) {
   fmt::print(stderr, "rhizodont: {}\n", sentence);
@@ -66,7 +67,8 @@ std::optional<std::string> say_unknown_command(const CLI::App& app, const std::s
   if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) return std::nullopt;
   std::string sentence = fmt::format("there is no command '{}'", word);
   if (const auto meant = closest_word(word, names)) return sentence + fmt::format(": did you mean {}?", *meant);
-  if (std::filesystem::exists(word)) return sentence + fmt::format(": did you mean complete {}?", word);
+  std::error_code ignored;
+  if (std::filesystem::exists(word, ignored)) return sentence + fmt::format(": did you mean complete {}?", word);
   return sentence + fmt::format(": there are {}", fmt::join(names, ", "));
 }
 
@@ -104,10 +106,8 @@ int main(int argc, char** argv) {
     return finish_printing(0);
   } catch (const rhizodont::Error& error) {
     return report(error.code(), error_line(error));
-  } catch (const std::bad_alloc&) {
-    return report(ErrorCode::internal, "the machine's memory is not enough for this");
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return report_unprintable();
-    return report(ErrorCode::internal, std::string("a fault of the program: ") + error.what());
+    return report(ErrorCode::internal, fault_line(error));
   }
 }

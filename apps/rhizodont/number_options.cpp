@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "number_options.hpp"
 
-#include "rhizodont/error.hpp"
-
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <map>
+#include <string>
+#include <string_view>
 
 namespace rhizodont::command_line {
 namespace {
@@ -52,24 +50,6 @@ void take_decimal_numbers(CLI::App& app) {
     if (type.starts_with("FLOAT")) option->transform(CLI::Validator(decimal_number, ""));
   }
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) take_decimal_numbers(*command);
-}
-
-double millimetres_per_unit(const std::string& name) {
-  static const std::map<std::string, double> units{
-      {"mm", 1},          {"millimetre", 1},    {"millimeter", 1},    {"cm", 10},      {"centimetre", 10},
-      {"centimeter", 10}, {"m", 1000},          {"metre", 1000},      {"meter", 1000}, {"in", 25.4},
-      {"inch", 25.4},     {"inche", 25.4},      {"\"", 25.4},         {"um", 1e-3},    {"\u00b5m", 1e-3},
-      {"\u03bcm", 1e-3},  {"micrometre", 1e-3}, {"micrometer", 1e-3}, {"micron", 1e-3}};
-  std::string word;
-  for (const char c : name)
-    if (c != ' ' && c != '.') word += c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
-  auto unit = units.find(word);
-  if (unit == units.end() && word.size() > 3 && word.ends_with('s')) unit = units.find(word.substr(0, word.size() - 1));
-  if (unit != units.end()) return unit->second;
-  double number = 0;
-  if (read_decimal(name, number))
-    throw UsageError(fmt::format("--unit takes a name, not the number {}: mm, cm, m, um or in (inches).", name));
-  throw UsageError(fmt::format("--unit: '{}' is none of mm, cm, m, um and in (inches).", name));
 }
 
 }  // namespace rhizodont::command_line

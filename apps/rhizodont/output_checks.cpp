@@ -35,7 +35,7 @@ void require_ending(const fs::path& output, const std::vector<std::string>& endi
 }
 
 void require_no_mesh_ending(const fs::path& output, const std::string& what) {
-  static const std::vector<std::string> meshes{".ply", ".stl", ".obj", ".off", ".vtp", ".glb"};
+  static const std::vector<std::string> meshes{".ply", ".stl", ".obj", ".off", ".vtp", ".vtk", ".glb", ".gz"};
   if (std::find(meshes.begin(), meshes.end(), lower_ending(output)) != meshes.end())
     throw UsageError(fmt::format("{}: {} must not have the name of a mesh.", output.string(), what));
 }

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <new>
 
 namespace rhizodont::command_line {
 namespace {
@@ -55,6 +56,11 @@ std::string error_line(const Error& error, const std::string& where_all_are) {
   if (ids.size() > most_shown)
     text += fmt::format(", ...: {} in all{}", ids.size(), where_all_are.empty() ? "" : ", " + where_all_are);
   return text + "]";
+}
+
+std::string fault_line(const std::exception& fault) {
+  if (dynamic_cast<const std::bad_alloc*>(&fault) != nullptr) return "the machine's memory is not enough for this";
+  return std::string("a fault of the program: ") + fault.what();
 }
 
 }  // namespace rhizodont::command_line

@@ -4,6 +4,7 @@
 
 #include "rhizodont/error.hpp"
 
+#include <exception>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,5 +18,8 @@ std::optional<std::string> closest_word(const std::string& word, const std::vect
 /// An error as one line: its sentence and at most three of the ids concerned. `where_all_are`: how to get at the
 /// others, such as "see report.json"; may be empty.
 std::string error_line(const Error& error, const std::string& where_all_are = {});
+
+/// What no error of the library's kinds says: no memory, or a fault of the program.
+std::string fault_line(const std::exception& fault);
 
 }  // namespace rhizodont::command_line

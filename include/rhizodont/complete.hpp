@@ -48,7 +48,8 @@ struct DroppedCrownVertex {
 
 /// Where the truth lies with 80 % probability, as found on generated teeth that the network was not trained on.
 struct RootInterval {
-  double length_low_mm = 0, length_high_mm = 0;  ///< of the root's length, [shortest_root_mm, longest_root_mm]
+  double length_low_mm = 0, length_high_mm = 0;  ///< of the root's length, which lies between them; else within
+                                                 ///< [shortest_root_mm, longest_root_mm]
   double apex_radius_mm = 0;                     ///< of a ball around the apex
 };
 
@@ -87,6 +88,12 @@ struct StageRecord {
   std::string name;
   double seconds = 0;
   double peak_memory_mb = 0;  ///< of the process so far
+};
+
+/// Where new triangles miss promise 3.
+struct MissedPlace {
+  std::string sentence;             ///< that says where, and by how much
+  std::vector<int> crown_vertices;  ///< of the input, beside the worst triangle there; may be empty
 };
 
 /// How the tooth came about.
@@ -138,6 +145,7 @@ struct CompletionRecord {
   std::vector<StageRecord> stages;
   std::vector<StageRecord> joining_steps;  ///< the parts of the stage "joining"; peak memory is not taken
   std::vector<std::string> warnings;
+  std::vector<MissedPlace> missed_places;  ///< to be warned of, too: `all_warnings`
 };
 
 /// A whole tooth. Its first vertices and triangles are the kept crown's, in the input's order, bit for bit.
@@ -175,6 +183,9 @@ std::filesystem::path default_models_folder();
 
 /// A unit in words ("millimetres"), or its millimetres ("3 mm") where it has no name here.
 std::string unit_in_words(double millimetres_per_unit);
+
+/// The millimetres of a unit by its name, in any usual spelling: "mm", "Inches", "um". Throws UsageError for others.
+double millimetres_per_unit(const std::string& name);
 
 /// Called with the name of each stage before it begins.
 using ProgressCallback = std::function<void(std::string_view stage)>;

@@ -19,20 +19,32 @@ enum class ErrorCode : int {
   unwritable = 6,      ///< a result cannot be written where it should go
 };
 
+/// What the ids of an error are.
+enum class ElementKind {
+  other,  ///< of no mesh that the user gave: lines of a file, records, parts of what was in the making
+  vertices,
+  triangles,
+  vertex_pairs,    ///< such as edges
+  triangle_pairs,  ///< such as those that cut each other
+};
+
 /// Base of all exceptions that the library throws.
-/// `what()` is one sentence that a dental technician understands; `elements()` are the ids concerned
-/// (vertices, triangles, lines: the sentence says which), possibly none.
+/// `what()` is one sentence that a dental technician understands; `elements()` are the ids concerned, possibly none,
+/// and `kind()` says of what.
 class Error : public std::runtime_error {
  public:
-  Error(ErrorCode code, const std::string& sentence, std::vector<std::int64_t> elements = {})
-      : std::runtime_error(sentence), code_(code), elements_(std::move(elements)) {}
+  Error(ErrorCode code, const std::string& sentence, std::vector<std::int64_t> elements = {},
+        ElementKind kind = ElementKind::other)
+      : std::runtime_error(sentence), code_(code), elements_(std::move(elements)), kind_(kind) {}
 
   ErrorCode code() const noexcept { return code_; }
   const std::vector<std::int64_t>& elements() const noexcept { return elements_; }
+  ElementKind kind() const noexcept { return kind_; }
 
  private:
   ErrorCode code_;
   std::vector<std::int64_t> elements_;
+  ElementKind kind_;
 };
 
 /// An option or argument is out of its range.
@@ -44,8 +56,12 @@ class UsageError : public Error {
 /// The input cannot be used: unreadable, damaged, or not a crown.
 class InputError : public Error {
  public:
-  explicit InputError(const std::string& sentence, std::vector<std::int64_t> elements = {})
-      : Error(ErrorCode::unusable_input, sentence, std::move(elements)) {}
+  explicit InputError(const std::string& sentence, std::vector<std::int64_t> elements = {},
+                      ElementKind kind = ElementKind::other)
+      : Error(ErrorCode::unusable_input, sentence, std::move(elements), kind) {}
+
+  /// The same of the same elements, in other words.
+  InputError reworded(const std::string& sentence) const { return InputError(sentence, elements(), kind()); }
 };
 
 /// A file cannot be written: no room, no right, no such place. What stood there before stands there still.
@@ -57,8 +73,9 @@ class OutputError : public Error {
 /// The input was understood, but no result keeps the promises.
 class NoResultError : public Error {
  public:
-  explicit NoResultError(const std::string& sentence, std::vector<std::int64_t> elements = {})
-      : Error(ErrorCode::no_result, sentence, std::move(elements)) {}
+  explicit NoResultError(const std::string& sentence, std::vector<std::int64_t> elements = {},
+                         ElementKind kind = ElementKind::other)
+      : Error(ErrorCode::no_result, sentence, std::move(elements), kind) {}
 };
 
 }  // namespace rhizodont

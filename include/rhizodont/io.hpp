@@ -53,7 +53,8 @@ struct MeshFile {
 /// True if every coordinate, rounded to float, is still the same number.
 bool coordinates_fit_float(const TriangleMesh& mesh);
 
-/// Rounds all coordinates to float, for formats that hold no more. Returns the farthest that this moved a vertex.
+/// Rounds all coordinates to float, for formats that hold no more. Returns the farthest that this moved a vertex, in
+/// the mesh's unit. Throws InputError (id of the vertex) for a coordinate beyond all floats.
 double round_to_float(TriangleMesh& mesh);
 
 /// Reads STL (binary, text), PLY (text, binary of both byte orders; polygons, strips), OBJ, OFF, VTP (text, base64,
@@ -73,6 +74,9 @@ MeshFile load_mesh(const std::filesystem::path& path);
 
 /// All bytes of a file or a pipe. Throws InputError, without the file's name, if it cannot be read.
 std::string read_file_bytes(const std::filesystem::path& path);
+
+/// All bytes that come over standard input. Throws InputError if they cannot be read.
+std::string read_standard_input();
 
 /// As `load_mesh`, of bytes that are at hand, such as those of standard input. The hint is a file's name, its ending or
 /// a format's name ("crown.stl", ".stl", "stl"). Errors do not name the file.

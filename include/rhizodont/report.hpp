@@ -21,8 +21,11 @@ inline constexpr int report_version = 3;
 struct ReportedInput {
   std::string sha256;                    ///< of the file's bytes; empty if they could not be read
   std::optional<std::string> file_name;  ///< without the folder
-  std::optional<double> rounded_mm;      ///< the farthest that rounding to float moved a vertex, in the file's unit
+  std::optional<double> rounded_mm;      ///< the farthest that rounding to float moved a vertex, mm
 };
+
+/// The record's warnings and where the tooth misses promise 3, a sentence each.
+std::vector<std::string> all_warnings(const CompletionRecord& record);
 
 /// The report on a completed tooth as JSON text; numbers of vertices stand as in the record (`refer_to_file`). Schema:
 /// docs/report.schema.json.

@@ -89,13 +89,11 @@ void write_stream(const OutputPlace& place, std::string_view bytes) {
 
 /// Takes back what was moved; says so where even that fails.
 void take_back(std::vector<StagedFile>& moved) {
-  bool all = true;
-  for (auto file = moved.rbegin(); file != moved.rend(); ++file) all = file->take_back() && all;
-  if (!all)
-    throw OutputError(
-        "The results cannot be written, and a file that they were to replace could not be put back: it is in its "
-        "folder "
-        "under a name that begins with .rhizodont-");
+  std::string left;
+  for (auto file = moved.rbegin(); file != moved.rend(); ++file)
+    if (!file->take_back()) left += (left.empty() ? "" : ", and ") + file->what_is_left(errno);
+  if (!left.empty())
+    throw OutputError("The results cannot be written, and not all could be put back as it was: " + left + ".");
 }
 
 }  // namespace

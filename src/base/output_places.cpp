@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/output_places.hpp"
 
+#include "base/held_signals.hpp"
 #include "base/staged_file.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/output_files.hpp"
@@ -72,45 +73,6 @@ std::vector<fs::path> missing_folders(fs::path folder) {
   return missing;
 }
 
-std::string reason(const OutputPlace& place, int error) {
-  const std::string folder = folder_of(place.target).string();
-  switch (error) {
-    case ENOSPC:
-      return "there is no room left on the disk";
-    case EDQUOT:
-      return "your share of the disk is used up";
-    case EROFS:
-      return fmt::format("the disk of the folder {} can only be read", folder);
-    case EACCES:
-    case EPERM:
-      return fmt::format("you have no right to write there (folder {})", folder);
-    case ENOENT:
-      return fmt::format("there is no folder {}", folder);
-    case ENOTDIR:
-      return fmt::format("a part of the folder's name {} is a file", folder);
-    case EEXIST:
-      return "a file of this name has appeared there meanwhile";
-    case EISDIR:
-      return "this is a folder, not a file";
-    case EFBIG:
-      return "it is larger than a file may become here";
-    case EPIPE:
-      return "nobody reads the other end of the pipe";
-    case ENAMETOOLONG:
-      return "the name is longer than the disk allows";
-    case ELOOP:
-      return "its links lead in a circle";
-    case EINTR:
-      return "the program was stopped";
-    case EIO:
-      return "the disk reports a fault";
-    case EBADF:
-      return "it is not open";
-    default:
-      return std::strerror(error);
-  }
-}
-
 /// A path as the user knows it: the program's own streams by what they are called.
 std::string shown(const fs::path& path) {
   const auto end = end_of_links(path);
@@ -168,7 +130,46 @@ OutputPlace find_output_place(const fs::path& path) {
   return place;
 }
 
-void throw_unwritable(const OutputPlace& place, int error) { refuse(place.given, reason(place, error)); }
+std::string why_unwritable(const OutputPlace& place, int error) {
+  const std::string folder = folder_of(place.target).string();
+  switch (error) {
+    case ENOSPC:
+      return "there is no room left on the disk";
+    case EDQUOT:
+      return "your share of the disk is used up";
+    case EROFS:
+      return fmt::format("the disk of the folder {} can only be read", folder);
+    case EACCES:
+    case EPERM:
+      return fmt::format("you have no right to write there (folder {})", folder);
+    case ENOENT:
+      return fmt::format("there is no folder {}", folder);
+    case ENOTDIR:
+      return fmt::format("a part of the folder's name {} is a file", folder);
+    case EEXIST:
+      return "a file of this name has appeared there meanwhile";
+    case EISDIR:
+      return "this is a folder, not a file";
+    case EFBIG:
+      return "it is larger than a file may become here";
+    case EPIPE:
+      return "nobody reads the other end of the pipe";
+    case ENAMETOOLONG:
+      return "the name is longer than the disk allows";
+    case ELOOP:
+      return "its links lead in a circle";
+    case EINTR:
+      return "the program was stopped";
+    case EIO:
+      return "the disk reports a fault";
+    case EBADF:
+      return "it is not open";
+    default:
+      return std::strerror(error);
+  }
+}
+
+void throw_unwritable(const OutputPlace& place, int error) { refuse(place.given, why_unwritable(place, error)); }
 
 void require_writable_place(const fs::path& path) {
   OutputPlace place = find_output_place(path);
@@ -177,6 +178,7 @@ void require_writable_place(const fs::path& path) {
     place.target = place.missing_folders.front();
     place.there.reset();
   }
+  const HeldSignals held;  // one that comes now ends the program once the file made for the trial is gone
   StagedFile{place};
 }
 

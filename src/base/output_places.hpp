@@ -28,6 +28,9 @@ struct OutputPlace {
 /// into a folder that is not there.
 OutputPlace find_output_place(const std::filesystem::path& path);
 
+/// Why a place cannot be written, in plain words. `error`: of errno.
+std::string why_unwritable(const OutputPlace& place, int error);
+
 /// Throws OutputError that says why in plain words, and that nothing was changed. `error`: of errno.
 [[noreturn]] void throw_unwritable(const OutputPlace& place, int error);
 

@@ -42,7 +42,7 @@ StagedFile::StagedFile(OutputPlace place) : place_(std::move(place)), name_(plac
     close(std::exchange(folder_, -1));
     fail(ENAMETOOLONG);
   }
-  descriptor_ = openat(folder_, ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+  descriptor_ = openat(folder_, ".", O_TMPFILE | O_WRONLY | O_CLOEXEC, mode());
   if (descriptor_ >= 0 && access(path_of_descriptor(descriptor_).c_str(), F_OK) == 0) return;
   if (descriptor_ >= 0) close(std::exchange(descriptor_, -1));  // without /proc it could not get a name
   open_named();
@@ -64,10 +64,12 @@ StagedFile::~StagedFile() {
 
 void StagedFile::fail(int error) const { throw_unwritable(place_, error); }
 
+mode_t StagedFile::mode() const { return place_.there ? place_.there->st_mode & 0777 : 0666; }
+
 void StagedFile::open_named() {
   do {
     aside_ = hidden_name();
-    descriptor_ = openat(folder_, aside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    descriptor_ = openat(folder_, aside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode());
   } while (descriptor_ < 0 && errno == EEXIST);
   if (descriptor_ >= 0) return;
   const int error = errno;
@@ -170,8 +172,17 @@ bool StagedFile::take_back() noexcept {
   const State state = std::exchange(state_, State::done);
   if (state == State::staged) return aside_.empty() || unlinkat(folder_, aside_.c_str(), 0) == 0;
   if (state == State::created) return unlinkat(folder_, name_.c_str(), 0) == 0;
-  if (state == State::replaced) return renameat(folder_, aside_.c_str(), folder_, name_.c_str()) == 0;
-  return true;
+  if (state != State::replaced) return true;
+  older_is_aside_ = renameat(folder_, aside_.c_str(), folder_, name_.c_str()) != 0;
+  return !older_is_aside_;
+}
+
+std::string StagedFile::what_is_left(int error) const {
+  const std::string why = why_unwritable(place_, error);
+  if (!older_is_aside_)
+    return fmt::format("{} is incomplete and could not be taken away ({})", place_.given.string(), why);
+  return fmt::format("what stood at {} is now {} ({})", place_.given.string(),
+                     (place_.target.parent_path() / aside_).string(), why);
 }
 
 void StagedFile::keep() noexcept {

@@ -4,6 +4,8 @@
 
 #include "base/output_places.hpp"
 
+#include <sys/types.h>
+
 #include <string>
 #include <string_view>
 
@@ -28,8 +30,11 @@ class StagedFile {
   /// then nothing can fail any more, and the older file is replaced in one step.
   void move_into_place(bool is_last_move);
 
-  /// The older file stands there again. False if that failed.
+  /// The older file stands there again. False, with errno, if that failed.
   bool take_back() noexcept;
+
+  /// After a failed `take_back`: what is left where, and why. `error`: of errno.
+  std::string what_is_left(int error) const;
 
   /// The older file, if it was kept aside, is given up.
   void keep() noexcept;
@@ -38,6 +43,7 @@ class StagedFile {
   enum class State { staged, created, replaced_last, replaced, done };
 
   [[noreturn]] void fail(int error) const;
+  mode_t mode() const;  // never wider than the older file's, also before it has its owner
   void open_named();
   void give_name();
   bool create();
@@ -50,6 +56,7 @@ class StagedFile {
   int descriptor_ = -1;  // open
   std::string aside_;    // hidden name beside the place: of this file before the move, of the older one after it
   State state_ = State::staged;
+  bool older_is_aside_ = false;  // and could not be put back
 };
 
 }  // namespace rhizodont

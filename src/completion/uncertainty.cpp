@@ -8,6 +8,7 @@
 #include "mesh/closest_point.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/root_steering.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -60,6 +61,12 @@ double expected_distance_at_apex(const PredictedTooth& predicted, const Eigen::V
   return std::accumulate(order.begin(), last, 0.0,
                          [&](double sum, std::size_t i) { return sum + predicted.expected_distance[i]; }) /
          static_cast<double>(deepest);
+}
+
+std::pair<double, double> length_interval(double length, double expected_at_apex, const UncertaintyScales& scales) {
+  const auto possible = [](double x) { return std::clamp(x, shortest_root_mm, longest_root_mm); };
+  return {std::min(length, possible(length + scales.length_low * expected_at_apex)),
+          std::max(length, possible(length + scales.length_high * expected_at_apex))};
 }
 
 std::vector<double> expected_distances(const TriangleMesh& tooth, const TriangleMesh& crown,

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rhizodont {
@@ -31,6 +32,10 @@ void note_uncertainty_scales(const UncertaintyScales& scales, std::map<std::stri
 /// Expected distance from their places, mm, of the predicted points that lie deepest along the growth axis: the mean
 /// over 16 of them. Precondition: at least 16 points; growth_axis is a unit vector from root to crown.
 double expected_distance_at_apex(const PredictedTooth& predicted, const Eigen::Vector3d& growth_axis);
+
+/// Where a root's length lies with 80 % probability, mm: among the lengths that roots can have, and never without the
+/// length itself. `expected_at_apex`: mm, >= 0.
+std::pair<double, double> length_interval(double length, double expected_at_apex, const UncertaintyScales& scales);
 
 /// Expected distance of each vertex of a tooth, mm: that of the predicted points nearby. It fades to nothing at the
 /// crown, whose own surface corrects the prediction around it over `reach` mm (> 0), and is 0 on the crown itself.

@@ -50,7 +50,8 @@ FilledMesh fill_holes(const TriangleMesh& mesh) {
                                  CGAL::parameters::use_delaunay_triangulation(true).do_not_use_cubic_algorithm(
                                      ids.size() > most_vertices_of_full_search));
     if (faces.empty())
-      throw NoResultError("A gap between the crown and its root could not be closed (ids of its vertices).", ids);
+      throw NoResultError("A gap between the crown and its root could not be closed (ids of its vertices).", ids,
+                          ElementKind::vertices);
     for (const auto face : faces) result.mesh.triangles.push_back(to_triangle(surface, face));
   }
   return result;

@@ -291,9 +291,12 @@ RestoredTooth restore_crown(const TriangleMesh& crown, const Joining& joining, c
       return tooth;
     }
     if (round >= options.rounds) {
-      std::vector<std::int64_t> ids;
-      for (const auto& [a, b] : cuts) ids.insert(ids.end(), {a, b});
-      throw NoResultError("The root could not be joined to the crown without cutting it (pairs of triangles).", ids);
+      std::set<std::int64_t> ids;
+      for (const auto& [a, b] : cuts)
+        for (const int t : {a, b})
+          if (static_cast<std::size_t>(t) < crown.triangles.size()) ids.insert(t);
+      throw NoResultError("The root could not be joined to the crown without cutting it (triangles of the crown).",
+                          {ids.begin(), ids.end()}, ElementKind::triangles);
     }
     patch.remove_around(cutting_sites(filled.mesh, crown.triangles.size(), patch.joined_sites(), cuts));
   }

@@ -65,8 +65,12 @@ bool coordinates_fit_float(const TriangleMesh& mesh) {
 
 double round_to_float(TriangleMesh& mesh) {
   double farthest = 0;
-  for (Point& p : mesh.vertices) {
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    Point& p = mesh.vertices[v];
     const Point rounded = nearest_float(p);
+    if (!rounded.allFinite())
+      throw InputError("a coordinate is larger than single precision can hold", {static_cast<std::int64_t>(v)},
+                       ElementKind::vertices);
     farthest = std::max(farthest, (rounded - p).norm());
     p = rounded;
   }

@@ -15,8 +15,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
-#include <fstream>
+#include <memory>
+#include <system_error>
 
 namespace rhizodont {
 namespace {
@@ -51,7 +53,8 @@ void take_out_repeated_corners(MeshFile& file) {
   }
   triangles.resize(kept);
   if (triangles.empty())
-    throw InputError("the file holds no triangle with three different corners", file.dropped_triangles);
+    throw InputError("the file holds no triangle with three different corners", file.dropped_triangles,
+                     ElementKind::triangles);
   if (const std::size_t dropped = file.dropped_triangles.size(); dropped > 0)
     file.notes.push_back(counted(dropped, "facet without area was left out: two of its corners",
                                  "facets without area were left out: two of their corners") +
@@ -76,16 +79,29 @@ MeshFile read_as(MeshFormat format, std::string_view bytes) {
   return read_vtk(bytes);
 }
 
+std::string all_bytes(std::FILE* file) {
+  std::string bytes;
+  std::size_t size = 0;
+  do {
+    bytes.resize(std::max<std::size_t>(2 * size, 1 << 16));
+    size += std::fread(bytes.data() + size, 1, bytes.size() - size, file);
+  } while (size == bytes.size());
+  if (std::ferror(file) != 0) throw InputError(fmt::format("the file cannot be read: {}", std::strerror(errno)));
+  bytes.resize(size);
+  return bytes;
+}
+
 }  // namespace
 
 std::string read_file_bytes(const fs::path& path) {
-  if (fs::is_directory(path)) throw InputError("this is a folder, not a file");
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(fmt::format("the file cannot be opened: {}", std::strerror(errno)));
-  std::string bytes{std::istreambuf_iterator<char>(stream), {}};
-  if (stream.bad()) throw InputError("the file cannot be read");
-  return bytes;
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) throw InputError("this is a folder, not a file");
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rbe"), std::fclose);
+  if (!file) throw InputError(fmt::format("the file cannot be opened: {}", std::strerror(errno)));
+  return all_bytes(file.get());
 }
+
+std::string read_standard_input() { return all_bytes(stdin); }
 
 void finish_reading(MeshFile& file) {
   if (file.mesh.triangles.empty()) throw InputError("the file holds no triangles");
@@ -108,10 +124,11 @@ MeshFile read_mesh(std::string_view bytes, const std::filesystem::path& name_or_
     if (content.bytes.empty()) throw InputError("the file is empty");
     MeshFile file = read_as(recognise(content.bytes, format_hint(name_or_format_hint)), content.bytes);
     file.notes.insert(file.notes.begin(), content.notes.begin(), content.notes.end());
+    for (std::string& note : file.notes) note = printable(std::move(note));
     finish_reading(file);
     return file;
   } catch (const InputError& error) {
-    throw InputError(printable(error.what()), error.elements());
+    throw error.reworded(printable(error.what()));
   }
 }
 
@@ -119,7 +136,7 @@ MeshFile load_mesh(const std::filesystem::path& path) {
   try {
     return read_mesh(read_file_bytes(path), path);
   } catch (const InputError& error) {
-    throw InputError(path.string() + ": " + error.what(), error.elements());
+    throw error.reworded(path.string() + ": " + error.what());
   }
 }
 

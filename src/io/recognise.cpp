@@ -269,7 +269,7 @@ MeshFormat by_ending(std::string_view bytes, std::string_view ending) {
   if (ending == ".vtp") return MeshFormat::vtp;
   if (ending == ".off" && is_text(bytes)) return MeshFormat::off;
   if (ending == ".stl" && !is_text(bytes)) return MeshFormat::stl;
-  if (ending == ".stl") throw InputError("this is a text, but no STL file: it has neither 'solid' nor 'facet'");
+  if (ending == ".stl") throw InputError("this is a text, but no STL file: it does not begin with 'solid' and 'facet'");
   if (ending == ".obj" && is_text(bytes))
     throw InputError("the file holds no vertices and no triangles, so it is no OBJ file");
   throw InputError(fmt::format("this is no mesh in a format that is read ({})", formats_read));

@@ -26,8 +26,10 @@ class StlTextReader {
 
   MeshFile read() {
     while (const auto word = next_if_any()) {
-      if (same_word(*word, "solid")) {
-        ended_ = false;
+      if (ended_ && !continues_mesh(*word)) {
+        cursor_.rest_of_line();
+        has_junk_ = true;
+      } else if (same_word(*word, "solid")) {
         pass_name();
       } else if (same_word(*word, "endsolid")) {
         ended_ = true;
@@ -39,9 +41,6 @@ class StlTextReader {
       } else if (same_word(*word, "facet")) {
         read_facet();
         ended_ = false;
-      } else if (ended_) {
-        cursor_.rest_of_line();
-        has_junk_ = true;
       } else {
         fail(*word, "facet");
       }
@@ -56,6 +55,15 @@ class StlTextReader {
   [[noreturn]] void fail(std::string_view found, std::string_view expected) const {
     throw InputError(fmt::format("line {}: '{}' is expected, '{:.30}' was found", cursor_.line(), expected, found),
                      {cursor_.line()});
+  }
+
+  // Whether a word after the end of a mesh begins another one, or ends it: text may begin with the same words.
+  bool continues_mesh(std::string_view word) const {
+    TextCursor ahead = cursor_;
+    const std::string_view next = ahead.word().value_or("");
+    if (same_word(word, "facet")) return same_word(next, "normal") || same_word(next, "outer");
+    if (same_word(word, "end")) return same_word(next, "solid");
+    return same_word(word, "solid") || same_word(word, "endsolid");
   }
 
   // The next word that is no comment and no colour, if there is one.

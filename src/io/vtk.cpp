@@ -24,6 +24,13 @@ struct ArrayType {
   VtkNumber number = VtkNumber::float64;
 };
 
+std::string lower(std::string_view word) {
+  std::string result(word);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
+  return result;
+}
+
 std::optional<ArrayType> type_named(std::string_view name) {
   using enum VtkNumber;
   static const std::map<std::string_view, VtkNumber> numbers{{"char", int8},
@@ -40,12 +47,10 @@ std::optional<ArrayType> type_named(std::string_view name) {
                                                              {"vtkidtype", int32},
                                                              {"float", float32},
                                                              {"double", float64}};
-  std::string lower(name);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
-  if (lower == "bit") return ArrayType{ArrayType::Kind::bit, uint8};
-  if (lower == "string" || lower == "utf8_string") return ArrayType{ArrayType::Kind::text, uint8};
-  const auto place = numbers.find(lower);
+  const std::string word = lower(name);
+  if (word == "bit") return ArrayType{ArrayType::Kind::bit, uint8};
+  if (word == "string" || word == "utf8_string") return ArrayType{ArrayType::Kind::text, uint8};
+  const auto place = numbers.find(word);
   if (place == numbers.end()) return std::nullopt;
   return ArrayType{ArrayType::Kind::number, place->second};
 }
@@ -80,9 +85,12 @@ class VtkReader {
     while (const auto keyword = cursor_.word()) {
       const std::int64_t line = cursor_.line();
       TextCursor words(cursor_.rest_of_line());
-      if (!read_structure(*keyword, words) && !read_attribute(*keyword, words)) {
+      if (read_structure(*keyword, words) || read_attribute(*keyword, words)) continue;
+      if (!has_cells_ || cursor_.remaining() == 0)  // at the end it is a word that was cut off
         throw InputError(fmt::format("line {}: {} is not known in a VTK file", line, shown(*keyword)), {line});
-      }
+      file_.notes.push_back(fmt::format("What stands from line {} on was passed over: {} is not known in a VTK file.",
+                                        line, shown(*keyword)));
+      break;
     }
     if (has_cell_colours_) file_.notes.emplace_back(triangle_colours_note);
     faces_.move_to(file_);
@@ -127,7 +135,9 @@ class VtkReader {
       return {};
     }
     if (binary_ && type.kind == ArrayType::Kind::bit) {
-      cursor_.bytes((with_room(tuples, components, 1) + 7) / 8);
+      constexpr std::uint64_t in_byte = 8;
+      if (components == 0 || tuples > in_byte * cursor_.remaining() / components) fail("the file is cut off");
+      cursor_.bytes((tuples * components + in_byte - 1) / in_byte);
       return {};
     }
     if (binary_) {
@@ -215,6 +225,7 @@ class VtkReader {
   template <class Take>
   void read_cells(TextCursor& words, const Take& take) {
     const std::uint64_t first = count(words, "cells"), second = count(words, "corners");
+    has_cells_ = true;
     std::vector<std::int32_t> corners;
     std::int64_t cell = 0;
     const auto add = [&](const double* begin, const double* end) {
@@ -281,9 +292,9 @@ class VtkReader {
       values(type(words), tuples_, components);
     } else {
       static const std::map<std::string_view, std::uint64_t> components{
-          {"VECTORS", 3},    {"NORMALS", 3},      {"TENSORS", 9},   {"TENSORS6", 6},
-          {"GLOBAL_IDS", 1}, {"PEDIGREE_IDS", 1}, {"EDGE_FLAGS", 1}};
-      const auto place = components.find(keyword);
+          {"vectors", 3},    {"normals", 3},      {"tensors", 9},   {"tensors6", 6},
+          {"global_ids", 1}, {"pedigree_ids", 1}, {"edge_flags", 1}};
+      const auto place = components.find(lower(keyword));
       if (place == components.end()) return false;
       values(type(words), tuples_, place->second);
     }
@@ -328,7 +339,7 @@ class VtkReader {
   TextCursor cursor_;
   bool binary_ = false;
   std::uint64_t tuples_ = 0;
-  bool of_points_ = false, has_cell_colours_ = false;
+  bool of_points_ = false, has_cell_colours_ = false, has_cells_ = false;
   FaceList faces_;
   MeshFile file_;
 };

@@ -103,7 +103,8 @@ TriangleAdjacency triangle_adjacency(const TriangleMesh& mesh) {
     }
   }
   if (!crowded.empty())
-    throw InputError("edges with more than two triangles (the two vertices of each follow)", crowded);
+    throw InputError("edges with more than two triangles (the two vertices of each follow)", crowded,
+                     ElementKind::vertex_pairs);
   return adjacency;
 }
 
@@ -140,7 +141,7 @@ std::vector<std::vector<int>> border_loops(const TriangleMesh& mesh) {
   if (!walk.branching.empty())
     throw InputError(
         "the border touches itself, or triangles beside it face opposite ways, at some vertices (numbers follow)",
-        walk.branching);
+        walk.branching, ElementKind::vertices);
   std::vector<std::vector<int>> loops;
   std::vector<bool> seen(mesh.vertices.size(), false);
   for (std::size_t start = 0; start < mesh.vertices.size(); ++start) {

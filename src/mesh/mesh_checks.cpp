@@ -16,14 +16,17 @@ void require_valid_indices(const TriangleMesh& mesh) {
     if (std::any_of(triangle.begin(), triangle.end(), [&](std::int32_t v) { return v < 0 || v >= count; }))
       bad.push_back(static_cast<std::int64_t>(t));
   }
-  if (!bad.empty()) throw InputError("triangles refer to vertices that do not exist (triangle numbers follow)", bad);
+  if (!bad.empty())
+    throw InputError("triangles refer to vertices that do not exist (triangle numbers follow)", bad,
+                     ElementKind::triangles);
 }
 
 void require_finite(const std::vector<Point>& points) {
   std::vector<std::int64_t> bad;
   for (std::size_t v = 0; v < points.size(); ++v)
     if (!points[v].allFinite()) bad.push_back(static_cast<std::int64_t>(v));
-  if (!bad.empty()) throw InputError("coordinates are not finite numbers (vertex numbers follow)", bad);
+  if (!bad.empty())
+    throw InputError("coordinates are not finite numbers (vertex numbers follow)", bad, ElementKind::vertices);
 }
 
 }  // namespace rhizodont

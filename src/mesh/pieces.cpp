@@ -8,6 +8,7 @@
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/places.hpp"
+#include "mesh/seams.hpp"
 
 #include <fmt/format.h>
 
@@ -81,6 +82,20 @@ void require_in_range(const PieceOptions& options) {
                                     {"like_share", options.like_share, OptionRange::above(0).at_most(1)}});
 }
 
+/// What lies along a seam to another piece belongs to it, however small it is.
+void keep_those_at_seams(const TriangleMesh& mesh, const Pieces& pieces, std::vector<bool>& is_speck) {
+  if (std::find(is_speck.begin(), is_speck.end(), true) == is_speck.end()) return;
+  const Seams seams = find_seams(mesh);
+  if (seams.merged == 0) return;
+  std::vector<int> of_vertex(mesh.vertices.size(), -1);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const int v : mesh.triangles[t]) of_vertex[static_cast<std::size_t>(v)] = pieces.of_triangle[t];
+  for (std::size_t v = 0; v < of_vertex.size(); ++v) {
+    const int here = of_vertex[v], there = of_vertex[static_cast<std::size_t>(seams.target[v])];
+    if (here != there) is_speck[static_cast<std::size_t>(here)] = is_speck[static_cast<std::size_t>(there)] = false;
+  }
+}
+
 }  // namespace
 
 std::size_t Pieces::count(PieceKind kind) const {
@@ -99,13 +114,19 @@ Pieces sort_pieces(const TriangleMesh& mesh, const PieceOptions& options) {
   if (area.empty()) return pieces;
   const auto largest = static_cast<std::size_t>(std::max_element(area.begin(), area.end()) - area.begin());
   constexpr double many = 50;
-  const double few = std::max(options.speck_triangles * triangles[largest], triangles[largest] >= many ? 1.0 : 0.0);
+  std::vector<bool> is_speck;
+  for (std::size_t p = 0; p < area.size(); ++p) {
+    const bool is_alone = triangles[p] == 1 && triangles[largest] >= many;
+    const bool is_small = area[p] < options.speck_area * area[largest] &&
+                          triangles[p] <= std::max(1.0, options.speck_triangles * triangles[largest]);
+    is_speck.push_back(p != largest && (is_alone || is_small));
+  }
+  keep_those_at_seams(mesh, pieces, is_speck);
   double in_specks = 0;
   for (std::size_t p = 0; p < area.size(); ++p) {
-    const bool speck = p != largest && (area[p] < options.speck_area * area[largest] || triangles[p] <= few);
-    in_specks += speck ? triangles[p] : 0;
+    in_specks += is_speck[p] ? triangles[p] : 0;
     pieces.kinds.push_back(p == largest                                    ? PieceKind::largest
-                           : speck                                         ? PieceKind::speck
+                           : is_speck[p]                                   ? PieceKind::speck
                            : area[p] >= options.like_share * area[largest] ? PieceKind::like
                                                                            : PieceKind::small);
   }

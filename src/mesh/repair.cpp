@@ -468,7 +468,7 @@ class Repair {
       std::sort(step.vertices.begin(), step.vertices.end());
       if (step.action == seam_action) {
         for (const int v : step.vertices) step.merged_into.push_back(piece_.stand_in(v));
-        step.action += fmt::format(", at most {:.2g} mm apart", piece_.widest_seam_mm());
+        step.action += fmt::format(", the farthest {} apart", seam_width_in_words(piece_.widest_seam_mm()));
       }
       std::sort(step.triangles.begin(), step.triangles.end());
       step.triangles.erase(std::unique(step.triangles.begin(), step.triangles.end()), step.triangles.end());

@@ -10,6 +10,8 @@
 #include "mesh/adjacency.hpp"
 #include "mesh/nearest_vertex.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -118,6 +120,11 @@ Seams find_seams(const TriangleMesh& mesh, const SeamOptions& options) {
                                 (mesh.vertices[v] - mesh.vertices[static_cast<std::size_t>(seams.target[v])]).norm());
   }
   return seams;
+}
+
+std::string seam_width_in_words(double mm) {
+  constexpr double least_said = 0.001;
+  return mm < least_said ? fmt::format("less than {} mm", least_said) : fmt::format("{:.2g} mm", mm);
 }
 
 }  // namespace rhizodont

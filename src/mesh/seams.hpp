@@ -4,6 +4,7 @@
 
 #include "rhizodont/mesh.hpp"
 
+#include <string>
 #include <vector>
 
 namespace rhizodont {
@@ -28,5 +29,8 @@ struct Seams {
 /// Finds places where border edges of a mesh run along each other, equal but for rounding or a small shift; of a soup
 /// all its seams at once. Takes n log n time. Precondition: valid indices, finite coordinates.
 Seams find_seams(const TriangleMesh& mesh, const SeamOptions& options = {});
+
+/// The width of a seam for a sentence: "0.012 mm", "less than 0.001 mm".
+std::string seam_width_in_words(double mm);
 
 }  // namespace rhizodont

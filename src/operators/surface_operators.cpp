@@ -41,8 +41,10 @@ void require_one_piece(const TriangleMesh& mesh) {
     else if (sets.find(static_cast<int>(v)) != first)
       apart.push_back(static_cast<std::int64_t>(v));
   }
-  if (!isolated.empty()) throw InputError("The mesh has vertices that no triangle uses.", isolated);
-  if (!apart.empty()) throw InputError("The mesh consists of several pieces (vertices of all but one).", apart);
+  if (!isolated.empty())
+    throw InputError("The mesh has vertices that no triangle uses.", isolated, ElementKind::vertices);
+  if (!apart.empty())
+    throw InputError("The mesh consists of several pieces (vertices of all but one).", apart, ElementKind::vertices);
 }
 
 /// Triangles around a vertex whose areas vanish give no normal: then that of the whole surface's mean is as good as

@@ -130,14 +130,18 @@ Cap recognise_cap(const TriangleMesh& closed_crown, const Atlas& atlas, std::opt
     cap.made = true;
     return cap;
   }
-  require_no_root(closed_crown);
   std::vector<Candidate> candidates =
       fdi ? for_known_type(closed_crown, atlas, *fdi) : for_unknown_type(closed_crown, atlas);
   sort_by_badness(candidates);
-  if (candidates.empty())
-    throw InputError(
-        "The mesh is closed, and no cap over a crown's base was recognised: give the crown with its base open.");
-  require_cap(candidates.front().cap);
+  try {
+    if (candidates.empty())
+      throw InputError(
+          "The mesh is closed, and no cap over a crown's base was recognised: give the crown with its base open.");
+    require_cap(candidates.front().cap);
+  } catch (const InputError&) {
+    require_no_root(closed_crown);  // a better reason
+    throw;
+  }
   return std::move(candidates.front().cap);
 }
 

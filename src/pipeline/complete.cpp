@@ -17,6 +17,7 @@
 #include "pipeline/guiding_cloud.hpp"
 #include "pipeline/missed_promise.hpp"
 #include "pipeline/models.hpp"
+#include "pipeline/part_of_mesh.hpp"
 #include "pipeline/prediction.hpp"
 #include "pipeline/report_parts.hpp"
 #include "pipeline/stage_clock.hpp"
@@ -155,9 +156,8 @@ void note_uncertainty(const TriangleMesh& crown, const TriangleMesh& tooth, cons
   for (double& u : completed.uncertainty) u *= scales->surface;
   if (steering.any()) return;
   const double s = record.apex_expected_distance_mm;
-  const auto possible = [](double length) { return std::clamp(length, shortest_root_mm, longest_root_mm); };
-  record.root_interval = {possible(record.root_length_mm + scales->length_low * s),
-                          possible(record.root_length_mm + scales->length_high * s), scales->apex * s};
+  const auto [low, high] = length_interval(record.root_length_mm, s, *scales);
+  record.root_interval = {low, high, scales->apex * s};
 }
 
 /// Where the stages have their origin, in the input's coordinates.
@@ -213,8 +213,10 @@ void put_in_place(const TriangleMesh& fused, const TriangleMesh& input, const st
   throw NoResultError(sentence);
 }
 
-/// A crown far from the origin is moved there first, without rounding: the whole steps of the grid that go between are
-/// multiples of every coordinate's last digit. One nearby stays, so that its tooth has always the same bits.
+/// A crown far from the origin is moved there first, by whole steps of a grid: that rounds no coordinate whose last
+/// digit is a part of a step, as all floats' are that lie as far out as the crown; a double or a stray vertex nearer to
+/// 0 may lose its last digit, 1e-14 mm. The stages alone work with that: the tooth has the input's own bits. A crown
+/// nearby stays, so that its tooth has always the same bits.
 Workplace workplace(const TriangleMesh& input, double millimetres_per_unit) {
   constexpr double far_mm = 500, step_mm = 64;
   Workplace place{Point::Zero(), millimetres_per_unit, coordinates_fit_float(input)};
@@ -275,9 +277,12 @@ void complete_at(const Workplace& place, const TriangleMesh& input, const Triang
     const GuidingCloud cloud = assemble_guiding_cloud(crown.mesh, tried.tooth.cloud);
     clock.begin("guiding surface");
     fitted = fitted_guiding_surface(cloud, crown.mesh, options.e);
-    return root_tapers(fitted.mesh, crown.mesh, tried.frame);
+    const bool is_root = root_tapers(fitted.mesh, crown.mesh, tried.frame);
+    if (!is_root) clock.begin("completion network");  // which is asked again
+    return is_root;
   };
-  RootPrediction prediction = predict(crown.mesh, found, models, makes_a_root, record);
+  RootPrediction prediction = on_part(crown.old_vertices, crown.old_triangles,
+                                      [&] { return predict(crown.mesh, found, models, makes_a_root, record); });
   PredictedTooth& predicted = prediction.tooth;
   auto& [surface, fit] = fitted;
   for (std::vector<Point>* points : {&surface.vertices, &predicted.cloud.points})
@@ -292,7 +297,8 @@ void complete_at(const Workplace& place, const TriangleMesh& input, const Triang
   clock.begin("joining");
   FuseOptions fuse;
   fuse.transition.width = options.transition;
-  const FusedTooth fused = fuse_crown_and_root(crown.mesh, surface, record.growth_axis, fuse);
+  const FusedTooth fused = on_part(crown.old_vertices, crown.old_triangles,
+                                   [&] { return fuse_crown_and_root(crown.mesh, surface, record.growth_axis, fuse); });
   note_fusion(fused, record);
   note_lengths(crown.mesh, fused.tooth.mesh, record);
   note_uncertainty(crown.mesh, fused.tooth.mesh, predicted, options.steering, tooth);
@@ -303,9 +309,8 @@ void complete_at(const Workplace& place, const TriangleMesh& input, const Triang
   tooth.source.assign(tooth.mesh.vertices.size(), VertexSource::predicted);
   std::fill_n(tooth.source.begin(), crown.old_vertices.size(), VertexSource::scan);
   for (const int v : fused.transition.vertices) tooth.source[static_cast<std::size_t>(v)] = VertexSource::transition;
-  for (std::string& missed : where_promise_three_is_missed(tooth.mesh, crown.old_vertices, crown.mesh.triangles.size(),
-                                                           record.promises.new_triangles))
-    record.warnings.push_back(std::move(missed));
+  record.missed_places = where_promise_three_is_missed(tooth.mesh, crown.old_vertices, crown.mesh.triangles.size(),
+                                                       record.promises.new_triangles);
 }
 
 /// A refusal names the options that may help.
@@ -323,9 +328,9 @@ CompletedTooth complete(const TriangleMesh& input, const CompletionModels::Conte
   try {
     complete_at(place, input, crown_at_work, models, clock, tooth);
   } catch (const InputError& error) {
-    throw InputError(error.what() + hint(), error.elements());
+    throw error.reworded(error.what() + hint());
   } catch (const NoResultError& error) {
-    throw NoResultError(error.what() + hint(), error.elements());
+    throw NoResultError(error.what() + hint(), error.elements(), error.kind());
   }
   return tooth;
 }

@@ -9,14 +9,17 @@
 #include "mesh/geometry.hpp"
 #include "mesh/handles.hpp"
 #include "mesh/pieces.hpp"
+#include "mesh/principal_axis.hpp"
 #include "mesh/seams.hpp"
 #include "mesh/self_intersection.hpp"
-#include "rhizodont/complete.hpp"
+#include "pipeline/units.hpp"
 #include "rhizodont/error.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <limits>
 
 namespace rhizodont {
 namespace {
@@ -47,9 +50,9 @@ void require_one_piece(const TriangleMesh& crown) {
     for (Triangle& t : merged.triangles)
       for (std::int32_t& v : t) v = seams.target[static_cast<std::size_t>(v)];
     if (sort_pieces(merged).count(PieceKind::like) == 0)
-      throw InputError(fmt::format(
-          "The crown falls into {} pieces along seams whose sides do not meet: they are up to {:.2g} mm apart.",
-          pieces.kinds.size(), seams.largest_mm));
+      throw InputError(
+          fmt::format("The crown falls into {} pieces along seams whose sides do not meet: the farthest are {} apart.",
+                      pieces.kinds.size(), seam_width_in_words(seams.largest_mm)));
   }
   throw InputError(describe_pieces(crown, pieces));
 }
@@ -60,6 +63,20 @@ double extent(const TriangleMesh& mesh) {
   for (const Triangle& t : mesh.triangles)
     for (const int v : t) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
   return box.sizes().maxCoeff();
+}
+
+/// Extent along the direction in which the mesh is longest, however it is turned.
+double length(const TriangleMesh& mesh) {
+  std::vector<Point> points;
+  for (const Triangle& t : mesh.triangles)
+    for (const int v : t) points.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+  const Eigen::Vector3d axis = principal_axis(points);
+  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+  for (const Point& p : points) {
+    low = std::min(low, p.dot(axis));
+    high = std::max(high, p.dot(axis));
+  }
+  return high - low;
 }
 
 constexpr const char* inside_out = "The crown is inside out: its triangles face inwards and have to be turned over.";
@@ -83,7 +100,7 @@ void require_one_opening(const TriangleMesh& open_crown) {
         fmt::format("The crown is open towards its root in {} places: it was cut below the furcation, or a "
                     "strip of the scan spans its base. Cut it at the neck (ids of vertices).",
                     openings),
-        ids);
+        ids, ElementKind::vertices);
 }
 
 constexpr double smallest_tooth = 2;  // mm
@@ -91,35 +108,20 @@ constexpr double largest_tooth = 20;
 constexpr double longest_crown = 15;  // mm: molars are up to 13 across, canines 11 high
 constexpr double longest_whole_tooth = 45;
 
-struct Unit {
-  const char* name;
-  const char* option;
-  double millimetres;
-};
-constexpr std::array<Unit, 5> units{{{"millimetres", "mm", 1},
-                                     {"micrometres", "um", 1e-3},
-                                     {"centimetres", "cm", 10},
-                                     {"inches", "in", 25.4},
-                                     {"metres", "m", 1000}}};
-
 }  // namespace
-
-std::string unit_in_words(double millimetres_per_unit) {
-  for (const Unit& unit : units)
-    if (unit.millimetres == millimetres_per_unit) return unit.name;
-  return fmt::format("{} mm", millimetres_per_unit);
-}
 
 Diagnosis require_readable_crown(const TriangleMesh& crown) {
   if (crown.triangles.empty()) throw InputError("The crown has no triangles.");
   Diagnosis d = diagnose(crown);
   if (!d.non_finite_vertices.empty())
-    throw InputError("The crown has vertices whose coordinates are not numbers.", widened(d.non_finite_vertices));
+    throw InputError("The crown has vertices whose coordinates are not numbers.", widened(d.non_finite_vertices),
+                     ElementKind::vertices);
   if (!d.out_of_range_triangles.empty())
     throw InputError("The crown has triangles that name vertices which do not exist.",
-                     widened(d.out_of_range_triangles));
+                     widened(d.out_of_range_triangles), ElementKind::triangles);
   if (!d.repeated_index_triangles.empty())
-    throw InputError("The crown has triangles that name one vertex twice.", widened(d.repeated_index_triangles));
+    throw InputError("The crown has triangles that name one vertex twice.", widened(d.repeated_index_triangles),
+                     ElementKind::triangles);
   if (is_double_sided(crown, d))
     throw InputError("The mesh is double-sided: its triangles are there twice, once facing outwards and once inwards.");
   return d;
@@ -129,18 +131,18 @@ Diagnosis require_usable_crown(const TriangleMesh& crown) {
   Diagnosis d = require_readable_crown(crown);
   if (!d.non_manifold_edges.empty())
     throw InputError("The crown has edges where more than two triangles meet (pairs of vertices).",
-                     flat_ids(d.non_manifold_edges));
+                     flat_ids(d.non_manifold_edges), ElementKind::vertex_pairs);
   if (!d.misoriented_edges.empty())
     throw InputError("Some triangles of the crown are flipped against their neighbours (edges as pairs of vertices).",
-                     flat_ids(d.misoriented_edges));
+                     flat_ids(d.misoriented_edges), ElementKind::vertex_pairs);
   require_one_piece(crown);
   if (d.border_edges.empty() && d.volume < 0) throw InputError(inside_out);
   return d;
 }
 
 void require_no_root(const TriangleMesh& closed_crown) {
-  const double size = extent(closed_crown);
-  if (size < longest_crown || size > longest_whole_tooth) return;
+  const double size = length(closed_crown);
+  if (size < longest_crown) return;
   throw InputError(
       fmt::format("The mesh is closed and {:.0f} mm long, a crown is up to {:.0f} mm: this tooth has its root already, "
                   "or a part of it. "
@@ -158,7 +160,7 @@ void require_tooth_size(const TriangleMesh& crown, double millimetres_per_unit, 
   if (size >= smallest_tooth && size <= (closed ? longest_whole_tooth : largest_tooth)) return;
   const double raw = size / millimetres_per_unit;
   std::string hint;
-  for (const Unit& unit : units)
+  for (const Unit& unit : known_units())
     if (raw * unit.millimetres >= smallest_tooth && raw * unit.millimetres <= largest_tooth)
       hint += fmt::format("{} {} (--unit {})", hint.empty() ? " Is it in" : " or", unit.name, unit.option);
   if (!hint.empty()) hint += "?";
@@ -180,7 +182,7 @@ void require_outward_and_uncut(const TriangleMesh& open_crown) {
                        ? "The crown's surface cuts itself (pairs of triangles)."
                        : "The crown's surface cuts itself in many places, as noisy scans do: smooth it a "
                          "little, or scan again (pairs of triangles).",
-                   ids);
+                   ids, ElementKind::triangle_pairs);
 }
 
 }  // namespace rhizodont

@@ -28,28 +28,28 @@ struct Sharp {
   bool any() const { return degrees < 180; }
 };
 
-std::string sentence(const char* where, const Sharp& sharp, double bound, const TriangleMesh& tooth,
-                     const std::vector<int>& kept_vertices) {
+MissedPlace place(const char* where, const Sharp& sharp, double bound, const TriangleMesh& tooth,
+                  const std::vector<int>& kept_vertices) {
+  MissedPlace missed;
   Point middle = Point::Zero();
-  std::string crown;
   for (const int v : tooth.triangles[sharp.triangle]) {
     middle += tooth.vertices[static_cast<std::size_t>(v)] / 3;
     if (static_cast<std::size_t>(v) < kept_vertices.size())
-      crown += fmt::format("{}{}", crown.empty() ? ", beside the crown's vertices " : ", ",
-                           kept_vertices[static_cast<std::size_t>(v)]);
+      missed.crown_vertices.push_back(kept_vertices[static_cast<std::size_t>(v)]);
   }
   const std::string others =
       sharp.others == 0 ? "" : fmt::format("; {} more have less than {:.0f} degrees", sharp.others, bound);
-  return fmt::format("A new triangle {} has an angle of only {:.2g} degrees, at ({:.2f}, {:.2f}, {:.2f}){}{}.", where,
-                     sharp.degrees, middle.x(), middle.y(), middle.z(), crown, others);
+  missed.sentence = fmt::format("A new triangle {} has an angle of only {:.2g} degrees, at ({:.2f}, {:.2f}, {:.2f}){}.",
+                                where, sharp.degrees, middle.x(), middle.y(), middle.z(), others);
+  return missed;
 }
 
 }  // namespace
 
-std::vector<std::string> where_promise_three_is_missed(const TriangleMesh& tooth, const std::vector<int>& kept_vertices,
+std::vector<MissedPlace> where_promise_three_is_missed(const TriangleMesh& tooth, const std::vector<int>& kept_vertices,
                                                        std::size_t crown_triangles, const NewTriangleFigures& figures) {
-  std::vector<std::string> sentences;
-  if (figures.holds() || !figures.all) return sentences;
+  std::vector<MissedPlace> places;
+  if (figures.holds() || !figures.all) return places;
   Sharp at_border, inner;
   for (std::size_t t = crown_triangles; t < tooth.triangles.size(); ++t) {
     const Triangle& triangle = tooth.triangles[t];
@@ -61,17 +61,18 @@ std::vector<std::string> where_promise_three_is_missed(const TriangleMesh& tooth
       (touches ? at_border : inner).add(t, angle);
   }
   if (at_border.any())
-    sentences.push_back(
-        sentence("at the crown's border", at_border, NewTriangleFigures::least_border_angle, tooth, kept_vertices));
+    places.push_back(
+        place("at the crown's border", at_border, NewTriangleFigures::least_border_angle, tooth, kept_vertices));
   if (inner.any())
-    sentences.push_back(sentence("of the root", inner, NewTriangleFigures::least_inner_angle, tooth, kept_vertices));
-  if (sentences.empty())
-    sentences.push_back(
-        fmt::format("New triangles are less even than promised: mean quality {:.3f} ({} promised), {:.2f} % "
-                    "of angles under 30 degrees ({} % promised).",
-                    figures.all->q_avg, NewTriangleFigures::least_q_avg, figures.all->percent_below_30,
-                    NewTriangleFigures::most_percent_below_30));
-  return sentences;
+    places.push_back(place("of the root", inner, NewTriangleFigures::least_inner_angle, tooth, kept_vertices));
+  if (places.empty())
+    places.push_back(
+        {fmt::format("New triangles are less even than promised: mean quality {:.3f} ({} promised), {:.2f} % "
+                     "of angles under 30 degrees ({} % promised).",
+                     figures.all->q_avg, NewTriangleFigures::least_q_avg, figures.all->percent_below_30,
+                     NewTriangleFigures::most_percent_below_30),
+         {}});
+  return places;
 }
 
 }  // namespace rhizodont

@@ -29,12 +29,14 @@ std::vector<std::filesystem::path> model_files(const std::filesystem::path& fold
   std::vector<std::filesystem::path> files;
   for (const char* needed : {completion_file, atlas_file}) {
     files.push_back(folder / needed);
-    if (!std::filesystem::exists(files.back()))
+    std::error_code ignored;
+    if (!std::filesystem::exists(files.back(), ignored))
       throw InputError("There is no " + std::string(needed) + " in " + folder.string() +
                        ", where the models should be.");
   }
+  std::error_code ignored;
   for (const char* optional : {skirt_file, likeness_file})
-    if (std::filesystem::exists(folder / optional)) files.push_back(folder / optional);
+    if (std::filesystem::exists(folder / optional, ignored)) files.push_back(folder / optional);
   return files;
 }
 
@@ -42,9 +44,10 @@ CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
   model_files(folder);
   auto content = std::make_unique<Content>(Content{
       load_atlas(folder / atlas_file), CompletionNetwork::load(folder / completion_file), std::nullopt, std::nullopt});
-  if (const auto skirt = folder / skirt_file; std::filesystem::exists(skirt))
+  std::error_code ignored;
+  if (const auto skirt = folder / skirt_file; std::filesystem::exists(skirt, ignored))
     content->skirt = SurfaceNetwork::load(skirt);
-  if (const auto likeness = folder / likeness_file; std::filesystem::exists(likeness))
+  if (const auto likeness = folder / likeness_file; std::filesystem::exists(likeness, ignored))
     content->likeness = load_likeness(likeness);
   return CompletionModels(std::move(content));
 }

@@ -7,6 +7,7 @@
 #include "pipeline/report_parts.hpp"
 #include "rhizodont/error.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -154,10 +155,19 @@ std::string text_of(const Json& json) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-/// What the sentence of an error says that its ids are.
-Json kind_of_ids(const std::string& sentence) {
-  for (const char* kind : {"pairs of vertices", "pairs of triangles", "vertices", "triangles"})
-    if (sentence.find(kind) != std::string::npos) return kind;
+Json words_for(ElementKind kind) {
+  switch (kind) {
+    case ElementKind::vertices:
+      return "vertices";
+    case ElementKind::triangles:
+      return "triangles";
+    case ElementKind::vertex_pairs:
+      return "pairs of vertices";
+    case ElementKind::triangle_pairs:
+      return "pairs of triangles";
+    case ElementKind::other:
+      break;
+  }
   return nullptr;
 }
 
@@ -181,7 +191,7 @@ Json refusal_json(const Error& error) {
   return {{"exit_code", static_cast<int>(error.code())},
           {"kind", kind_of(error.code())},
           {"sentence", error.what()},
-          {"ids_are", error.elements().empty() ? Json(nullptr) : kind_of_ids(error.what())},
+          {"ids_are", error.elements().empty() ? Json(nullptr) : words_for(error.kind())},
           {"ids", error.elements()}};
 }
 
@@ -194,6 +204,16 @@ std::vector<int> vertices_not_of_tooth(const CompletionRecord& record) {
                      [&](const RepairStep& step) { return step.action == dropped.reason; }))
       vertices.push_back(dropped.vertex);
   return vertices;
+}
+
+std::vector<std::string> all_warnings(const CompletionRecord& record) {
+  std::vector<std::string> sentences = record.warnings;
+  for (const MissedPlace& place : record.missed_places) {
+    sentences.push_back(place.sentence);
+    if (!place.crown_vertices.empty())
+      sentences.back() += fmt::format(" It is beside the crown's vertices {}.", fmt::join(place.crown_vertices, ", "));
+  }
+  return sentences;
 }
 
 std::string completion_report(const CompletedTooth& tooth, const ReportedInput& input) {
@@ -215,7 +235,7 @@ std::string completion_report(const CompletedTooth& tooth, const ReportedInput& 
       {"new_triangles", new_triangles_json(record.promises.new_triangles)},
       {"promises", record.promises},
       {"stages", stages_json(record.stages)},
-      {"warnings", record.warnings},
+      {"warnings", all_warnings(record)},
   });
   return text_of(json);
 }

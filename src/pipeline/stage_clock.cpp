@@ -5,6 +5,8 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
+
 namespace rhizodont {
 namespace {
 
@@ -19,7 +21,10 @@ double peak_memory_mb() {
 void StageClock::begin(const std::string& name) {
   end_stage();
   if (progress_) progress_(name);
-  records_.push_back({name, 0, 0});
+  const auto same =
+      std::find_if(records_.begin(), records_.end(), [&](const StageRecord& record) { return record.name == name; });
+  current_ = static_cast<std::size_t>(same - records_.begin());
+  if (same == records_.end()) records_.push_back({name, 0, 0});
   started_ = std::chrono::steady_clock::now();
   running_ = true;
 }
@@ -31,8 +36,8 @@ std::vector<StageRecord> StageClock::finish() {
 
 void StageClock::end_stage() {
   if (!running_) return;
-  records_.back().seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
-  records_.back().peak_memory_mb = peak_memory_mb();
+  records_[current_].seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
+  records_[current_].peak_memory_mb = peak_memory_mb();
   running_ = false;
 }
 

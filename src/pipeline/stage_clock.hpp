@@ -9,7 +9,7 @@
 
 namespace rhizodont {
 
-/// Notes time and memory of the stages as they follow each other.
+/// Notes time and memory of the stages as they follow each other; of one that is taken up again, the sum.
 class StageClock {
  public:
   explicit StageClock(const ProgressCallback& progress) : progress_(progress) {}
@@ -24,6 +24,7 @@ class StageClock {
 
   const ProgressCallback& progress_;
   std::vector<StageRecord> records_;
+  std::size_t current_ = 0;
   std::chrono::steady_clock::time_point started_;
   bool running_ = false;
 };

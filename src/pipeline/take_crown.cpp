@@ -9,6 +9,7 @@
 #include "mesh/repair.hpp"
 #include "pipeline/closed_crown.hpp"
 #include "pipeline/crown_input.hpp"
+#include "pipeline/part_of_mesh.hpp"
 #include "rhizodont/error.hpp"
 #include "skirt/made_cap.hpp"
 #include "skirt/ragged_part.hpp"
@@ -116,7 +117,8 @@ KeptCrown all_between(const TriangleMesh& crown, const Submesh& part, const Kept
 /// Takes off what the network judges to be skirt, and the spikes on what is left.
 void drop_skirt(const TriangleMesh& crown, KeptCrown& kept, const SurfaceNetwork& network, double threshold,
                 CompletionRecord& record) {
-  const std::vector<float> confidence = skirt_confidence(kept.mesh, network);
+  const std::vector<float> confidence =
+      on_part(kept.old_vertices, kept.old_triangles, [&] { return skirt_confidence(kept.mesh, network); });
   record.skirt_model = network.metadata();
   record.tooth_confidence.assign(crown.vertices.size(), -1);
   for (std::size_t v = 0; v < confidence.size(); ++v)
@@ -136,14 +138,16 @@ KeptCrown open_part(const TriangleMesh& crown, bool closed, const Tools& tools, 
   return kept;
 }
 
-void require_tooth_surface(const TriangleMesh& open_crown) {
-  require_usable_crown(open_crown);
-  require_outward_and_uncut(open_crown);
+void require_tooth_surface(const KeptCrown& kept) {
+  on_part(kept.old_vertices, kept.old_triangles, [&] {
+    require_usable_crown(kept.mesh);
+    require_outward_and_uncut(kept.mesh);
+  });
 }
 
-bool is_tooth_surface(const TriangleMesh& open_crown) {
+bool is_tooth_surface(const KeptCrown& kept) {
   try {
-    require_tooth_surface(open_crown);
+    require_tooth_surface(kept);
     return true;
   } catch (const InputError&) {
     return false;
@@ -157,18 +161,23 @@ KeptCrown tooth_of_raw_crown(const TriangleMesh& crown, const Tools& tools, cons
   require_readable_crown(crown);
   require_one_crown(crown);  // gum beside it is smaller
   const Submesh part = submesh(crown, sound_triangles(crown));
+  if (part.mesh.triangles.empty())
+    throw InputError("No part of the mesh is a surface: more than two triangles meet at the edges of all of them.");
   const bool closed = diagnose(part.mesh).border_edges.empty();
-  KeptCrown kept = open_part(part.mesh, closed, tools, options, record);
-  drop_skirt(part.mesh, kept, *tools.skirt, *options.skirt, record);
+  KeptCrown kept = on_part(part.old_vertices, part.old_triangles, [&] {
+    KeptCrown opened = open_part(part.mesh, closed, tools, options, record);
+    drop_skirt(part.mesh, opened, *tools.skirt, *options.skirt, record);
+    return opened;
+  });
   record.tooth_confidence = numbered_as_before(record.tooth_confidence, part.old_vertices, crown.vertices.size());
   if (part.old_triangles.size() < crown.triangles.size()) kept = all_between(crown, part, kept);
   if (const std::vector<bool> open = triangles_without_slits(kept.mesh);
       std::find(open.begin(), open.end(), false) != open.end())
     keep_only(kept, open, "ragged border");
-  if (is_tooth_surface(kept.mesh)) return kept;
+  if (is_tooth_surface(kept)) return kept;
   keep_only(kept, triangles_without_ragged_defects(kept.mesh), "ragged border");
   keep_only(kept, triangles_without_spikes(kept.mesh), "spike");
-  require_tooth_surface(kept.mesh);
+  require_tooth_surface(kept);
   return kept;
 }
 
@@ -180,7 +189,7 @@ KeptCrown usable_part(const TriangleMesh& crown, const Tools& tools, const Compl
   } else {
     const bool closed = require_usable_crown(crown).border_edges.empty();
     kept = open_part(crown, closed, tools, options, record);
-    require_outward_and_uncut(kept.mesh);
+    on_part(kept.old_vertices, kept.old_triangles, [&] { require_outward_and_uncut(kept.mesh); });
   }
   if (record.cap_dropped) list_dropped_cap(crown, std::vector<bool>(crown.triangles.size(), true), kept, record);
   return kept;
@@ -197,6 +206,7 @@ void number_as_input(KeptCrown& kept, const RepairedMesh& repaired, std::size_t 
     v = in_input(v);
     reason[static_cast<std::size_t>(v)].clear();
   }
+  for (int& t : kept.old_triangles) t = repaired.old_triangles[static_cast<std::size_t>(t)];
   kept.dropped.clear();
   for (std::size_t v = 0; v < reason.size(); ++v)
     if (!reason[v].empty()) kept.dropped.push_back({static_cast<int>(v), reason[v]});
@@ -217,7 +227,7 @@ void number_record_as_whole(CompletionRecord& record, const std::vector<int>& ol
 /// What `take` keeps of the repaired crown, in the crown's numbers.
 KeptCrown part_of_repaired(const TriangleMesh& crown, RepairedMesh repaired, CompletionRecord& record,
                            const std::function<KeptCrown(const TriangleMesh&)>& take) {
-  KeptCrown kept = take(repaired.mesh);
+  KeptCrown kept = on_part(repaired.old_vertices, repaired.old_triangles, [&] { return take(repaired.mesh); });
   number_as_input(kept, repaired, crown.vertices.size());
   number_record_as_whole(record, repaired.old_vertices, repaired.old_triangles, crown.vertices.size());
   for (RepairStep& step : record.repairs) repaired.steps.push_back(std::move(step));
@@ -241,7 +251,8 @@ KeptCrown part_without_cap(const TriangleMesh& closed, const std::vector<bool>& 
   keep.flip();
   KeptCrown kept = keep_crown(closed, keep, "cap", is_cap);
   require_tooth_size(kept.mesh, options.millimetres_per_unit);
-  KeptCrown rest = mended_part(kept.mesh, tools, options, record);
+  KeptCrown rest =
+      on_part(kept.old_vertices, kept.old_triangles, [&] { return mended_part(kept.mesh, tools, options, record); });
   number_record_as_whole(record, kept.old_vertices, kept.old_triangles, closed.vertices.size());
   reduce_to(kept, std::move(rest));
   record.cap_dropped = true;

@@ -6,42 +6,51 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
+#include <regex>
+#include <set>
 #include <string>
 #include <utility>
 
 namespace rhizodont {
 namespace {
 
-/// A part of the crown's colours as 0 to 255.
-std::optional<std::vector<double>> colour_part(const MeshFile& crown, const std::string& name) {
-  for (const std::string& spelling : {name, "diffuse_" + name}) {
-    const auto place = crown.vertex_attributes.find(spelling);
-    if (place == crown.vertex_attributes.end()) continue;
-    const auto& [type, values] = place->second;
-    const bool unit = type == AttributeType::float32 || type == AttributeType::float64;
-    std::vector<double> part;
-    for (const double x : values) {
-      const double scaled = std::round(unit ? 255 * x : x);
-      if (!(scaled >= 0 && scaled <= 255)) return std::nullopt;
-      part.push_back(scaled);
-    }
-    return part;
-  }
-  return std::nullopt;
-}
-
 using Colours = std::vector<std::pair<std::string, std::vector<double>>>;
 
-/// Red, green and blue of the crown's vertices, and alpha if it has one; empty if they are not all there.
+bool is_float(AttributeType type) { return type == AttributeType::float32 || type == AttributeType::float64; }
+
+/// The attribute with a part of the crown's colours; null if there is none.
+const VertexAttribute* colour_part(const MeshFile& crown, const std::string& name) {
+  for (const std::string& spelling : {name, "diffuse_" + name})
+    if (const auto place = crown.vertex_attributes.find(spelling); place != crown.vertex_attributes.end())
+      return &place->second;
+  return nullptr;
+}
+
+/// Red, green, blue and, if the crown has it, alpha of its vertices; empty if the first three are not all there.
+std::vector<std::pair<std::string, const VertexAttribute*>> colour_parts(const MeshFile& crown) {
+  std::vector<std::pair<std::string, const VertexAttribute*>> parts;
+  for (const char* name : {"red", "green", "blue", "alpha"})
+    if (const VertexAttribute* part = colour_part(crown, name)) parts.emplace_back(name, part);
+  const bool has_three = parts.size() >= 3 && parts[2].first == "blue";
+  return has_three ? parts : std::vector<std::pair<std::string, const VertexAttribute*>>{};
+}
+
+/// The crown's colours as 0 to 255: floats up to 1 are shares of that. Empty if there are none, or others.
 Colours colours_of(const MeshFile& crown) {
+  const auto parts = colour_parts(crown);
+  const bool are_shares = std::all_of(parts.begin(), parts.end(), [](const auto& part) {
+    const std::vector<double>& values = part.second->values;
+    return !is_float(part.second->type) || std::all_of(values.begin(), values.end(), [](double x) { return x <= 1; });
+  });
   Colours colours;
-  for (const char* name : {"red", "green", "blue"}) {
-    auto part = colour_part(crown, name);
-    if (!part) return {};
-    colours.emplace_back(name, std::move(*part));
+  for (const auto& [name, part] : parts) {
+    colours.emplace_back(name, std::vector<double>());
+    for (const double x : part->values) {
+      const double scaled = std::round(is_float(part->type) && are_shares ? 255 * x : x);
+      if (!(scaled >= 0 && scaled <= 255)) return {};
+      colours.back().second.push_back(scaled);
+    }
   }
-  if (auto alpha = colour_part(crown, "alpha")) colours.emplace_back("alpha", std::move(*alpha));
   return colours;
 }
 
@@ -55,6 +64,27 @@ VertexAttribute carried(const std::vector<double>& of_crown, const std::vector<i
   }
   attribute.values.resize(tooth_vertices, kept.empty() ? 0 : std::round(sum / static_cast<double>(kept.size())));
   return attribute;
+}
+
+std::vector<std::int64_t> ids_in_file(const Error& error, const MeshFile& crown) {
+  std::vector<std::int64_t> ids = error.elements();
+  const bool of_vertices = error.kind() == ElementKind::vertices || error.kind() == ElementKind::vertex_pairs;
+  if (crown.file_vertices.empty() || !of_vertices) return ids;
+  for (std::int64_t& v : ids)
+    if (v >= 0 && static_cast<std::size_t>(v) < crown.file_vertices.size())
+      v = crown.file_vertices[static_cast<std::size_t>(v)];
+  return ids;
+}
+
+/// The runs of digits in a name, but for dates (2026-11-27, 27.11.2026, 2026_11), whose days and months look like
+/// teeth.
+std::vector<std::string> numbers_in(std::string name) {
+  static const std::string year = "(19|20)[0-9]{2}", month = "(0[1-9]|1[0-2])", day = "(0[1-9]|[12][0-9]|3[01])",
+                           gap = "[-_. ]", before = "(^|[^0-9])", after = "(?![0-9])";
+  static const std::regex year_first(before + year + gap + month + "(" + gap + day + ")?" + after),
+      year_last(before + "(" + day + gap + ")?" + month + gap + year + after), digits("[0-9]+");
+  for (const std::regex& date : {year_first, year_last}) name = std::regex_replace(name, date, "$1");
+  return {std::sregex_token_iterator(name.begin(), name.end(), digits), std::sregex_token_iterator()};
 }
 
 }  // namespace
@@ -80,18 +110,40 @@ MeshFile tooth_file(const CompletedTooth& tooth, const MeshFile& crown) {
   return file;
 }
 
+std::optional<int> fdi_in_name(const fs::path& file) {
+  std::set<int> found;
+  for (const std::string& number : numbers_in(file.stem().string())) {
+    if (number.size() != 2) continue;
+    const int quadrant = number[0] - '0', place = number[1] - '0';
+    if (quadrant >= 1 && quadrant <= 4 && place >= 1 && place <= 8) found.insert(10 * quadrant + place);
+  }
+  return found.size() == 1 ? std::optional(*found.begin()) : std::nullopt;
+}
+
+void require_format_holds(const CompletedTooth& tooth, const std::filesystem::path& output) {
+  if (!holds_floats_only(output) || coordinates_fit_float(tooth.mesh)) return;
+  throw NoResultError(output.string() +
+                      " cannot hold this tooth: the crown lies so far from the origin that single precision is too "
+                      "coarse for new triangles there. Move the scan to the origin, or give the tooth a name in .ply.");
+}
+
 void refer_to_file(CompletionRecord& record, const MeshFile& crown, const std::filesystem::path& output) {
   std::vector<std::string> notes = crown.notes;
   std::string ending = output.extension().string();
   for (char& c : ending)
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  if (ending != ".ply" && !colours_of(crown).empty())
+  const bool has_colours = !colours_of(crown).empty();
+  if (!has_colours && !colour_parts(crown).empty())
+    notes.push_back("The scan's colours were left out: they are not between 0 and 255.");
+  if (ending != ".ply" && has_colours)
     notes.push_back("The scan's colours are not in " + ending + " files; a tooth written to .ply has them.");
   record.warnings.insert(record.warnings.begin(), notes.begin(), notes.end());
   if (crown.file_vertices.empty()) return;
   const auto renumber = [&](int& v) { v = crown.file_vertices[static_cast<std::size_t>(v)]; };
   for (int& v : record.kept_vertices) renumber(v);
   for (DroppedCrownVertex& dropped : record.dropped_vertices) renumber(dropped.vertex);
+  for (MissedPlace& place : record.missed_places)
+    for (int& v : place.crown_vertices) renumber(v);
   for (RepairStep& step : record.repairs)
     for (std::vector<int>* ids : {&step.vertices, &step.merged_into})
       for (int& v : *ids) renumber(v);
@@ -99,13 +151,11 @@ void refer_to_file(CompletionRecord& record, const MeshFile& crown, const std::f
 }
 
 InputError in_terms_of_file(const InputError& error, const MeshFile& crown) {
-  const std::string sentence = error.what();
-  std::vector<std::int64_t> elements = error.elements();
-  if (crown.file_vertices.empty() || sentence.find("of vertices)") == std::string::npos) return error;
-  for (std::int64_t& v : elements)
-    if (v >= 0 && static_cast<std::size_t>(v) < crown.file_vertices.size())
-      v = crown.file_vertices[static_cast<std::size_t>(v)];
-  return InputError(sentence, elements);
+  return InputError(error.what(), ids_in_file(error, crown), error.kind());
+}
+
+NoResultError in_terms_of_file(const NoResultError& error, const MeshFile& crown) {
+  return NoResultError(error.what(), ids_in_file(error, crown), error.kind());
 }
 
 }  // namespace rhizodont

@@ -18,6 +18,7 @@
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <set>
 
 namespace rhizodont {
 namespace {
@@ -146,12 +147,14 @@ class BasePolygon {
   void add(std::size_t t) {
     in_[t] = true;
     ++count_;
+    for (std::size_t e = 0; e < 3; ++e) note_rim(t, e, in_[crown_.beyond(t, e)] ? -1 : 1);
     for (std::size_t i = 0; i < 3; ++i) corners_[static_cast<std::size_t>(crown_.corner(t, i))] = true;
   }
   void remove_last(std::size_t t) {
     const std::size_t e = joining_edge(t);
     in_[t] = false;
     --count_;
+    for (std::size_t k = 0; k < 3; ++k) note_rim(t, k, in_[crown_.beyond(t, k)] ? 1 : -1);
     corners_[static_cast<std::size_t>(crown_.corner(t, e + 2))] = false;
   }
 
@@ -185,16 +188,37 @@ class BasePolygon {
     }
   }
 
+  /// An edge comes to the rim or goes from it.
+  void note_rim(std::size_t t, std::size_t e, int sign) {
+    const double length = crown_.edge_length(t, e);
+    rim_length_ += sign * length;
+    rim_bend_sum_ += sign * length * crown_.bend(t, e);
+  }
+
   /// Mean bend at the polygon's rim, degrees.
-  double rim_bend() const {
-    double sum = 0, length = 0;
+  double rim_bend() const { return rim_length_ > 0 ? rim_bend_sum_ / rim_length_ : 0; }
+
+  /// Takes triangles beside the polygon that can join and that `accept` takes, by ascending numbers and again while
+  /// there are some. One that was not taken is looked at again once another one beside it was.
+  template <class Accept>
+  void spread(const Accept& accept) {
+    std::set<std::size_t> beside;
+    const auto note_beside = [&](std::size_t t) {
+      for (std::size_t e = 0; e < 3; ++e)
+        if (const std::size_t n = crown_.beyond(t, e); !in_[n]) beside.insert(n);
+    };
     for (std::size_t t = 0; t < crown_.size(); ++t)
-      for (std::size_t e = 0; in_[t] && e < 3; ++e) {
-        if (in_[crown_.beyond(t, e)]) continue;
-        sum += crown_.edge_length(t, e) * crown_.bend(t, e);
-        length += crown_.edge_length(t, e);
+      if (in_[t]) note_beside(t);
+    while (!beside.empty())
+      for (auto place = beside.begin(); place != beside.end();) {
+        const std::size_t t = *place;
+        beside.erase(place);
+        if (can_join(t) && accept(t)) {
+          add(t);
+          note_beside(t);
+        }
+        place = beside.upper_bound(t);
       }
-    return length > 0 ? sum / length : 0;
   }
 
   /// Programs write the triangles that they add one after the other. Where the polygon's lie so, all between them are
@@ -205,11 +229,11 @@ class BasePolygon {
       if (in_[t]) low = std::min(low, t), high = t;
     if (static_cast<double>(high - low + 1) > 3.0 * static_cast<double>(count_) + 8) return;
     std::vector<std::size_t> added;
-    for (bool any = true; any;) {
-      any = false;
-      for (std::size_t t = low; t <= high; ++t)
-        if (can_join(t)) add(t), added.push_back(t), any = true;
-    }
+    spread([&](std::size_t t) {
+      if (t < low || t > high) return false;
+      added.push_back(t);
+      return true;
+    });
     if (count_ != high - low + 1) {
       for (auto t = added.rbegin(); t != added.rend(); ++t) remove_last(*t);
       return;
@@ -257,18 +281,12 @@ class BasePolygon {
   void take_ears() {
     constexpr double clearly = 10;  // degrees
     const double too_long = too_long_for_crown();
-    for (bool any = true; any;) {
-      any = false;
-      for (std::size_t t = 0; t < crown_.size(); ++t) {
-        if (!can_join(t)) continue;
-        const std::size_t e = joining_edge(t);
-        const double inward = crown_.bend(t, e);
-        const double outward = 0.5 * (crown_.bend(t, e + 1) + crown_.bend(t, e + 2));
-        if (crown_.edge_length(t, e) < too_long && inward + clearly > outward) continue;
-        add(t);
-        any = true;
-      }
-    }
+    spread([&](std::size_t t) {
+      const std::size_t e = joining_edge(t);
+      const double inward = crown_.bend(t, e);
+      const double outward = 0.5 * (crown_.bend(t, e + 1) + crown_.bend(t, e + 2));
+      return crown_.edge_length(t, e) >= too_long || inward + clearly <= outward;
+    });
   }
 
   const Closed& crown_;
@@ -276,6 +294,8 @@ class BasePolygon {
   Mask in_;
   Mask corners_;  // per vertex
   std::size_t count_ = 0;
+  double rim_length_ = 0;    // mm
+  double rim_bend_sum_ = 0;  // of its edges, bend times length
 };
 
 /// Vertices on the rim of a region, if it is one simple loop; else none.
@@ -325,10 +345,31 @@ bool add_row(const Closed& crown, Mask& region) {
   return simple_rim(crown, region).size() == rim.size();
 }
 
-/// Walls of a flat base that stand upright on it however they are triangulated.
+/// How far the corners of a flat region lie from its plane, mm: as little as the file's digits allow.
+double roughness(const Closed& crown, const Mask& region, const Eigen::Vector3d& direction) {
+  double low = std::numeric_limits<double>::infinity(), high = -low, farthest = 0;
+  for (std::size_t t = 0; t < crown.size(); ++t)
+    for (std::size_t i = 0; region[t] && i < 3; ++i) {
+      const Point& p = crown.at(t, i);
+      low = std::min(low, p.dot(direction));
+      high = std::max(high, p.dot(direction));
+      farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
+    }
+  return std::max(high - low, farthest * std::numeric_limits<float>::epsilon());
+}
+
+/// Walls of a flat base that stand upright on it, as exactly as the base is flat, however they are triangulated.
 void add_upright_walls(const Closed& crown, Mask& region, const Eigen::Vector3d& direction) {
-  constexpr double upright = 2e-3;    // cosine
-  constexpr double least_height = 1;  // mm: lower ones are crown that happens to be upright
+  constexpr double upright = 1e-5;       // cosine: what of the crown happens to stand so is very little
+  constexpr double most_upright = 2e-3;  // cosine, also of needles, whose direction the digits leave open
+  constexpr double least_height = 1;     // mm: lower ones are crown that happens to be upright
+  const double rough = roughness(crown, region, direction);
+  const auto is_upright = [&](std::size_t t) {
+    double longest = 0;
+    for (std::size_t e = 0; e < 3; ++e) longest = std::max(longest, crown.edge_length(t, e));
+    const double height = 2 * triangle_area(crown.mesh, t) / longest;
+    return std::abs(crown.normals[t].dot(direction)) <= std::min(most_upright, upright + 2 * rough / height);
+  };
   Mask with_walls = region;
   std::vector<std::size_t> open;
   double rim = 0, walls = 0;
@@ -338,7 +379,7 @@ void add_upright_walls(const Closed& crown, Mask& region, const Eigen::Vector3d&
   for (std::size_t k = 0; k < open.size(); ++k)
     for (std::size_t e = 0; e < 3; ++e) {
       const std::size_t n = crown.beyond(open[k], e);
-      if (with_walls[n] || std::abs(crown.normals[n].dot(direction)) > upright) continue;
+      if (with_walls[n] || !is_upright(n)) continue;
       with_walls[n] = true;
       walls += triangle_area(crown.mesh, n);
       open.push_back(n);

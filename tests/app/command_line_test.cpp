@@ -101,7 +101,14 @@ TEST_F(CommandLine, SeveralCrownsGoToAFolder) {
   expect_error(complete("crown_34.ply crown_36.stl -o teeth/today"), 2, "did not name it yourself");
   expect_error(complete("crown_34.ply crown_36.stl --fdi 34 -o more"), 2, "--fdi is of one crown");
   expect_error(complete("crown_34.ply crown_36.stl -o somebody.ply"), 2, "need a folder");
-  expect_error(complete("crown_34.ply ./crown_34.ply -o more"), 2, "the same file");
+  expect_error(complete("crown_34.ply crown_36.stl -o more/tooth.ply"), 2, "need a folder");
+  expect_error(complete("crown_34.ply crown_36.stl -o more --report -"), 2, "give a folder (--report FOLDER)");
+  expect_error(complete("crown_34.ply crown_36.stl -o -"), 2, "give a folder (-o FOLDER)");
+  expect_error(complete("crown_34.ply crown_34.ply -o more"), 2, "crown_34.ply is given twice");
+  fs::create_directory(at("p2"));
+  fs::copy_file(at("crown_34.ply"), at("p2/crown_34.ply"));
+  expect_error(complete("crown_34.ply p2/crown_34.ply -o more"), 2, "crown_34.ply and p2/crown_34.ply would both");
+  EXPECT_FALSE(fs::exists(at("more"))) << "nothing is made before all is planned";
   expect_done(complete("crown_36.stl --fdi 36 -o teeth/today --overwrite --output-format stl --quiet"));
   EXPECT_TRUE(fs::exists(at("teeth/today/crown_36_tooth.stl")));
 }
@@ -183,6 +190,49 @@ TEST_F(CommandLine, NamesThatAreNotUtf8AndNamesOfPatients) {
   expect_done(complete("'" + name + "' --fdi 36 -o '" + name + ".ply' --report r.json --name-in-report"));
   EXPECT_EQ(report("r.json")["input"]["file"], "M\xef\xbf\xbdller_36.stl");
   EXPECT_EQ(run("measure 'no " + name + "'").code, 3);
+}
+
+TEST_F(CommandLine, TheReportOnARefusedFileDoesNotNameIt) {
+  folder.write("Mueller_36.stl", "nothing");
+  const Outcome outcome = run(complete("Mueller_36.stl -o tooth.ply --report r.json"));
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_NE(outcome.error.find("Mueller_36.stl: "), std::string::npos) << "on the screen it helps: " << outcome.error;
+  EXPECT_TRUE(report("r.json").contains("refused"));
+  EXPECT_EQ(read_all(at("r.json")).find("Mueller"), std::string::npos) << read_all(at("r.json"));
+  EXPECT_EQ(run(complete("Mueller_36.stl -o tooth.ply --report r.json --name-in-report")).code, 3);
+  EXPECT_EQ(report("r.json")["input"]["file"], "Mueller_36.stl");
+}
+
+TEST_F(CommandLine, AWrongFolderOfModelsIsNoRefusalOfTheCrown) {
+  expect_done(complete("crown_34.ply --fdi 34 -o tooth.ply --report r.json"));
+  const std::string before = read_all(at("r.json"));
+  expect_error(complete("crown_34.ply --fdi 34 -o tooth.ply --report r.json --models nowhere"), 3, "nowhere");
+  EXPECT_EQ(read_all(at("r.json")), before) << "an earlier report is lost";
+}
+
+TEST_F(CommandLine, FilesThatCannotBeReadAreNoFaultOfTheProgram) {
+  fs::create_symlink("circle.stl", at("circle.stl"));
+  const std::string too_long(300, 'a');
+  for (const std::string& name : {std::string("circle.stl"), too_long, std::string("/proc/self/mem")}) {
+    expect_error(complete("'" + name + "' --fdi 34 -o tooth.ply"), 3, name.substr(0, 20));
+    expect_error("measure '" + name + "'", 3, name.substr(0, 20));
+  }
+  expect_error(too_long, 2, "there is no command");
+}
+
+TEST_F(CommandLine, AFaultInOneCrownLeavesTheOthers) {
+  std::ofstream(at("endless.stl")).put('0');
+  fs::resize_file(at("endless.stl"), std::uintmax_t{1} << 40);  // without a byte on the disk
+  folder.write("bad_11.stl", "nothing");
+  const Outcome outcome = run(complete("endless.stl bad_11.stl -o teeth"), "ulimit -v 1000000;");
+  EXPECT_EQ(outcome.code, 5) << outcome.error;
+  EXPECT_NE(outcome.error.find("endless.stl: the machine's memory is not enough"), std::string::npos) << outcome.error;
+  EXPECT_NE(outcome.error.find("bad_11.stl: "), std::string::npos) << outcome.error;
+}
+
+TEST_F(CommandLine, CheckReadsTheCrownOnce) {
+  expect_done(complete("crown_36.stl --fdi 36 -o tooth.ply --report r.json"));
+  expect_done("check /dev/stdin tooth.ply --report r.json", "cat crown_36.stl |");
 }
 
 TEST_F(CommandLine, DoubleCoordinatesAreNotRoundedUnasked) {

@@ -130,6 +130,19 @@ void close_by_block(TriangleMesh& mesh, Loop loop, const Eigen::Vector3d& down, 
     close_by_ears(mesh, loop, down);
 }
 
+/// Some of the triangles from `first` to `last` cut in three, so that walls have no regular rows.
+void make_uneven(TriangleMesh& mesh, std::size_t first, std::size_t last) {
+  for (std::size_t t = first; t < last; t += 3) {
+    const Triangle c = mesh.triangles[t];
+    Point middle = Point::Zero();
+    for (const int v : c) middle += mesh.vertices[static_cast<std::size_t>(v)] / 3;
+    const std::int32_t m = add(mesh, middle);
+    mesh.triangles[t] = {c[0], c[1], m};
+    mesh.triangles.push_back({c[1], c[2], m});
+    mesh.triangles.push_back({c[2], c[0], m});
+  }
+}
+
 /// The part above a plane, triangles cut there, an edge's length above the border's highest vertex.
 TriangleMesh cut_even(const TriangleMesh& crown) {
   const Eigen::Vector3d up = -downward(crown);
@@ -184,7 +197,8 @@ ClosedCrown shuffled(const ClosedCrown& closed, std::uint64_t seed) {
 }  // namespace
 
 std::vector<std::string> base_kinds() {
-  return {"fan", "cone", "ears", "corner fan", "rings", "flat", "block", "tapered block", "plain block"};
+  return {"fan",  "cone",  "ears",          "corner fan",  "rings",
+          "flat", "block", "tapered block", "plain block", "uneven block"};
 }
 
 ClosedCrown closed_base(const TriangleMesh& open_crown, const std::string& kind, std::uint64_t shuffling_seed) {
@@ -210,6 +224,11 @@ ClosedCrown closed_base(const TriangleMesh& open_crown, const std::string& kind,
     close_by_block(mesh, loop, down, 8, 0.15, true);
   } else if (kind == "plain block") {
     close_by_block(mesh, loop, down, 1, 0, false);
+  } else if (kind == "uneven block") {
+    const Eigen::Vector3d aslant = down + 0.09 * down.unitOrthogonal();  // 5 degrees
+    close_by_block(mesh, loop, aslant.normalized(), 1, 0, false);
+    const std::size_t first = closed.is_cap.size();
+    make_uneven(mesh, first, first + 2 * loop.size());
   } else {
     throw UsageError("There is no way to close a base called " + kind + ".");
   }

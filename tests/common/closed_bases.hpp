@@ -11,7 +11,7 @@
 // Crowns closed over their base as programs do it.
 namespace rhizodont::test {
 
-/// fan, cone, ears, corner fan, rings, flat, block, tapered block, plain block.
+/// fan, cone, ears, corner fan, rings, flat, block, tapered block, plain block, uneven block.
 std::vector<std::string> base_kinds();
 
 /// The open crown closed over its longest border loop. Its triangles come first, those that close it after them, or,

@@ -35,6 +35,24 @@ TEST(Swelling, OfADropOnAThreadIsLarge) {
   EXPECT_GT(swelling(drop, Eigen::Vector3d::UnitZ(), 0), 1.5);
 }
 
+TEST(Swelling, OfNoRootIsInfinite) {
+  const TriangleMesh cone = root([](double depth) { return 4 - 0.3 * depth; });
+  EXPECT_TRUE(std::isinf(swelling(cone, Eigen::Vector3d::UnitZ(), -13)));
+}
+
+TEST(Solid, IsASurfaceButNotOneWithoutARoot) {
+  PredictedTooth tooth;
+  for (const Point& p : root([](double depth) { return 4 - 0.3 * depth; }).vertices) {
+    tooth.cloud.points.push_back(p);
+    tooth.cloud.normals.push_back(Eigen::Vector3d::UnitX());
+    tooth.expected_distance.push_back(0);
+  }
+  const Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();
+  EXPECT_TRUE(is_solid(solidity(tooth, axis, 0)));
+  EXPECT_EQ(solidity(tooth, axis, -13).below, 0) << "all of it lies above";
+  EXPECT_FALSE(is_solid(solidity(tooth, axis, -13)));
+}
+
 TEST(Swelling, DoesNotDependOnWhereTheToothStands) {
   const TriangleMesh upright = root([](double depth) { return 3 + std::sin(depth); });
   TriangleMesh turned = upright;

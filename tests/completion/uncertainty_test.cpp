@@ -42,6 +42,19 @@ TEST(Uncertainty, NoneOnTheCrownAndTheNetworksFarFromIt) {
   EXPECT_NEAR(u[5], 2.0, 1e-6);
 }
 
+TEST(Uncertainty, AnIntervalHoldsTheLengthAndHasRootsLengths) {
+  const UncertaintyScales scales{-1.5, 0.5, 1, 1};
+  EXPECT_EQ(length_interval(12, 2, scales), std::pair(9.0, 13.0));
+  EXPECT_EQ(length_interval(4, 2, scales), std::pair(3.0, 5.0)) << "no root is shorter";
+  EXPECT_EQ(length_interval(1.5, 1, scales), std::pair(1.5, 3.0)) << "but this one is";
+  const auto [low, high] = length_interval(45, 1, scales);
+  EXPECT_LE(low, 45);
+  EXPECT_EQ(high, 45);
+  const auto [least, most] = length_interval(12, 4, {0.5, 1, 1, 1});  // scales may lie on one side of 0
+  EXPECT_EQ(least, 12);
+  EXPECT_EQ(most, 16);
+}
+
 TEST(Uncertainty, ScalesGoThroughTheWeightFile) {
   std::map<std::string, std::string> metadata;
   EXPECT_FALSE(uncertainty_scales(metadata));

@@ -33,6 +33,26 @@ TEST(Files, MissingFilesAndFoldersAreErrors) {
   EXPECT_EQ(folder.file_count(), 1U);
 }
 
+TEST(Files, WhatCannotBeReadIsAnInputError) {
+  const TemporaryFolder folder;
+  fs::create_symlink("circle.ply", folder.path() / "circle.ply");
+  for (const fs::path& path : {folder.path() / "circle.ply", folder.path() / std::string(300, 'a'),
+                               fs::path("/proc/self/mem"), fs::path(std::string(5000, 'b'))})
+    EXPECT_THROW(load_mesh(path), InputError) << path;
+}
+
+TEST(Files, RoundingToFloatKnowsTheLargestFloat) {
+  TriangleMesh mesh = cube();
+  mesh.vertices[3].y() = 1e39;
+  try {
+    round_to_float(mesh);
+    FAIL() << "infinity is no coordinate";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.elements(), std::vector<std::int64_t>{3});
+    EXPECT_EQ(error.kind(), ElementKind::vertices);
+  }
+}
+
 TEST(Files, InvalidMeshesAreNotWritten) {
   const TemporaryFolder folder;
   const fs::path path = folder.path() / "a.ply";

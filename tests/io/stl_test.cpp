@@ -120,7 +120,7 @@ TEST(Stl, DoubleCoordinatesAreNotSquashedSilently) {
 TEST(Stl, BadFilesAreRefused) {
   const std::string good = binary_stl("x", two_facets);
   expect_refused("a.stl", "", "empty");
-  expect_refused("a.stl", "hello", "neither 'solid' nor 'facet'");
+  expect_refused("a.stl", "hello", "does not begin with 'solid' and 'facet'");
   expect_refused("a.stl", good.substr(0, 83), "too short");
   expect_refused("a.stl", good.substr(0, good.size() - 1), "announces 2 triangles and has room for 1");
   expect_refused("a.stl", binary_stl("x", {}), "no triangles");
@@ -132,6 +132,19 @@ TEST(Stl, BadFilesAreRefused) {
   expect_refused("a.stl", binary_stl("x", facets), "triangle 1");
   facets = {{{{1, 1, 1}, {1, 1, 1}, {2, 1, 1}}}};
   expect_refused("a.stl", binary_stl("x", facets), "three different corners");
+}
+
+TEST(Stl, WhateverFollowsTheEndOfATextIsPassedOver) {
+  const MeshFile whole = load_bytes("a.stl", ascii_square);
+  for (const char* junk : {"end of file\n", "facets: 2\n", "facet count 2\n", "end\n", "-- made by a program\n"}) {
+    const MeshFile file = load_bytes("a.stl", ascii_square + junk);
+    EXPECT_EQ(file.mesh.triangles, whole.mesh.triangles) << junk;
+    EXPECT_TRUE(test::notes_hold(file, "after the end of the mesh was passed over")) << junk;
+  }
+  const std::string second = ascii_square.substr(ascii_square.find(" facet"));
+  for (const std::string& more : {ascii_square, "solid\n" + second, second, "end of file\n" + ascii_square})
+    EXPECT_EQ(load_bytes("a.stl", ascii_square + more).mesh.triangles.size(), 4U) << more;
+  expect_refused("a.stl", "solid s\n" + std::string("end of file\n"), "'solid' is expected");
 }
 
 TEST(Stl, BadTextIsRefusedWithItsLine) {

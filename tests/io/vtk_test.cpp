@@ -95,6 +95,37 @@ TEST(Vtk, ValuesThatDoNotFitAreNoted) {
   EXPECT_TRUE(test::notes_hold(file, "'height' has 3 values for 4 points"));
 }
 
+TEST(Vtk, KeywordsMayBeWrittenInAnyCase) {
+  std::string text = text_4;
+  for (const char* keyword : {"NORMALS", "VECTORS", "TEXTURE_COORDINATES", "COLOR_SCALARS", "POINT_DATA", "POLYGONS"}) {
+    std::string lower = keyword;
+    for (char& c : lower) c = c == '_' ? c : static_cast<char>(c - 'A' + 'a');
+    text.replace(text.find(keyword), lower.size(), lower);
+  }
+  expect_square(load_bytes("a.vtk", text));
+}
+
+TEST(Vtk, WhatIsNotKnownAfterTheMeshIsPassedOver) {
+  const MeshFile file = load_bytes("a.vtk", changed("VECTORS", "ARROWS"));
+  EXPECT_EQ(file.mesh.vertices, square);
+  EXPECT_TRUE(test::notes_hold(file, "'ARROWS' is not known in a VTK file"));
+}
+
+TEST(Vtk, BitsNeedABytePerEight) {
+  const std::string whole = binary_5();
+  const std::string mesh = whole.substr(0, whole.find("\nPOINT_DATA"));
+  EXPECT_EQ(load_bytes("a.vtk", mesh + "\nFIELD F 1\nflag 1 17 bit\nabc").mesh.vertices, square);
+  for (const char* cut : {"\nFIELD F 1\nflag 1 1 bit\n", "\nFIELD F 1\nflag 1 1 bit", "\nFIELD F 1\nflag 1 17 bit\nab",
+                          "\nFIELD F 1\nflag 4294967296 4294967296 bit\nab"})
+    expect_refused("a.vtk", mesh + cut, "cut off");
+}
+
+TEST(Vtk, NotesQuoteNothingThatATerminalObeys) {
+  const MeshFile file =
+      load_bytes("a.vtk", changed("height 1 4 double\n0.1 0.2 0.3 0.4", "h%1b[2J 1 3 double\n0.1 0.2 0.3"));
+  EXPECT_TRUE(test::notes_hold(file, "'h?[2J' has 3 values"));
+}
+
 TEST(Vtk, BadFilesAreRefused) {
   expect_refused("a.vtk", changed("ASCII", "TEXT"), "'TEXT' is no encoding");
   expect_refused("a.vtk", changed("DATASET POLYDATA", "DATASET STRUCTURED_POINTS"), "'STRUCTURED_POINTS', no surface");
@@ -109,7 +140,7 @@ TEST(Vtk, BadFilesAreRefused) {
   expect_refused("a.vtk", changed("4 0 1 2 3", "4 0 1 2 4"), "polygon 0 (counted from 0) refers to a vertex");
   expect_refused("a.vtk", changed("0 0 0 1 0 0", "0 0 0 1 0 x"), "'x' is not a number");
   expect_refused("a.vtk", changed("0 0 0 1 0 0", "0 0 nan 1 0 0"), "not finite");
-  expect_refused("a.vtk", changed("VECTORS", "ARROWS"), "'ARROWS' is not known in a VTK file");
+  expect_refused("a.vtk", changed("POINTS 4", "PLACES 4"), "'PLACES' is not known in a VTK file");
   expect_refused("a.vtk", text_4.substr(0, text_4.find("0 1 0.1")), "cut off");
   expect_refused("a.vtk", "# vtk DataFile Version 3.0\n", "no encoding");
 }

@@ -30,7 +30,7 @@ TEST(Pieces, OneIsNothingToSpeakOf) {
   EXPECT_TRUE(sort_pieces({}).kinds.empty());
 }
 
-TEST(Pieces, SpecksAreSmallOrOfFewTrianglesWhateverTheirArea) {
+TEST(Pieces, SpecksAreSmallOrASingleTriangleWhateverItsArea) {
   TriangleMesh mesh = test::together(crown(), test::dome(0, 0.3), Point(6, 0, 0));
   add_triangle(mesh, Point(0, 9, 0), 12);
   const RepairedMesh rest = drop_specks(mesh);
@@ -38,6 +38,23 @@ TEST(Pieces, SpecksAreSmallOrOfFewTrianglesWhateverTheirArea) {
   ASSERT_EQ(rest.steps.size(), 1U);
   EXPECT_EQ(rest.steps[0].vertices.size(), mesh.vertices.size() - crown().vertices.size());
   EXPECT_TRUE(rest.steps[0].triangles.empty());
+}
+
+TEST(Pieces, FewTrianglesOfACrownsAreaAreNoSpeck) {
+  // a coarse crown beside a fine one
+  const TriangleMesh mesh = test::together(test::dome(5, 4), test::dome(0, 4), Point(9, 0, 0));
+  EXPECT_TRUE(drop_specks(mesh).steps.empty());
+  EXPECT_NE(said_of(mesh).find("2 crowns"), std::string::npos);
+}
+
+TEST(Pieces, APatchBehindASeamIsNoSpeckHoweverSmall) {
+  const TriangleMesh whole = test::dome(5, 4);
+  std::vector<bool> in_patch(whole.triangles.size(), false), rest(whole.triangles.size(), true);
+  for (std::size_t t = 0; t < 4; ++t) in_patch[t] = true, rest[t] = false;
+  const TriangleMesh patch = submesh(whole, in_patch).mesh, hole = submesh(whole, rest).mesh;
+  EXPECT_TRUE(drop_specks(test::together(hole, patch, Point(1e-6, 0, 0))).steps.empty());
+  EXPECT_TRUE(drop_specks(test::together(patch, hole, Point(1e-6, 0, 0))).steps.empty());
+  EXPECT_FALSE(drop_specks(test::together(hole, patch, Point(0, 0, 3))).steps.empty()) << "far from its place it is one";
 }
 
 TEST(Pieces, ATriangleHangingOnACornerIsASpeckAndTheCornerStays) {

@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include <limits>
 
 namespace rhizodont {
@@ -99,6 +101,23 @@ TEST(CrownInput, AClosedMeshMayBeLongerForItMayHaveARoot) {
     EXPECT_NE(std::string(error.what()).find("its root already"), std::string::npos);
   }
   EXPECT_NO_THROW(require_no_root(test::sphere(3, 4)));
+}
+
+TEST(CrownInput, ARootIsKnownByTheLengthHoweverTheFileIsTurned) {
+  for (const double length : {14.0, 16.0}) {
+    TriangleMesh tooth = test::sphere(3, 1);
+    for (Point& p : tooth.vertices) p = Point(3 * p.x(), 3 * p.y(), length / 2 * p.z());
+    for (int k = 0; k < 6; ++k) {
+      TriangleMesh turned = tooth;
+      const Eigen::Matrix3d turn =
+          Eigen::AngleAxisd(0.4 * k, Eigen::Vector3d(1, 2, 0.3).normalized()).toRotationMatrix();
+      for (Point& p : turned.vertices) p = turn * p;
+      if (length < 15)
+        EXPECT_NO_THROW(require_no_root(turned)) << k;
+      else
+        EXPECT_THROW(require_no_root(turned), InputError) << k;
+    }
+  }
 }
 
 TEST(CrownInput, ACrownThatCutsItselfIsRefusedWithTheTriangles) {

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace rhizodont {
 namespace {
 
@@ -37,20 +39,23 @@ TEST(MissedPromise, NamesPlaceVerticesAndAngle) {
   ball.vertices[static_cast<std::size_t>(t[0])] =
       0.5 * (ball.vertices[static_cast<std::size_t>(t[1])] + ball.vertices[static_cast<std::size_t>(t[2])]) +
       Eigen::Vector3d(0, 0, 0.01);
-  const auto sentences = where_promise_three_is_missed(ball, kept, 0, figures(ball, 0, t[0] + 1));
-  ASSERT_FALSE(sentences.empty());
-  EXPECT_NE(sentences.front().find("at the crown's border"), std::string::npos);
-  EXPECT_NE(sentences.front().find(std::to_string(70 + t[0])), std::string::npos) << sentences.front();
-  EXPECT_NE(sentences.front().find("degrees, at ("), std::string::npos) << sentences.front();
+  const auto places = where_promise_three_is_missed(ball, kept, 0, figures(ball, 0, t[0] + 1));
+  ASSERT_FALSE(places.empty());
+  const std::string& sentence = places.front().sentence;
+  EXPECT_NE(sentence.find("at the crown's border"), std::string::npos);
+  EXPECT_NE(sentence.find("degrees, at ("), std::string::npos) << sentence;
+  const std::vector<int>& beside = places.front().crown_vertices;
+  EXPECT_NE(std::find(beside.begin(), beside.end(), 70 + t[0]), beside.end());
 }
 
 TEST(MissedPromise, TellsAnUnevenMeshByItsFigures) {
   const TriangleMesh ball = test::sphere(3, 5);
   NewTriangleFigures found = figures(ball, 0, 0);
   found.all->q_avg = 0.91;
-  const auto sentences = where_promise_three_is_missed(ball, {}, 0, found);
-  ASSERT_EQ(sentences.size(), 1U);
-  EXPECT_NE(sentences.front().find("0.910"), std::string::npos) << sentences.front();
+  const auto places = where_promise_three_is_missed(ball, {}, 0, found);
+  ASSERT_EQ(places.size(), 1U);
+  EXPECT_NE(places.front().sentence.find("0.910"), std::string::npos) << places.front().sentence;
+  EXPECT_TRUE(places.front().crown_vertices.empty());
 }
 
 }  // namespace

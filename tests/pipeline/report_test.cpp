@@ -57,22 +57,26 @@ TEST(Report, OfARefusedCrownSaysWhyAndWhere) {
   std::vector<std::int64_t> ids(210);
   std::iota(ids.begin(), ids.end(), 0);
   const ReportedInput input;
-  const auto report = json::parse(
-      completion_refusal_report(InputError("These vertices are wrong.", ids), for_tooth(34), input, {"welded"}));
+  const auto report = json::parse(completion_refusal_report(InputError("This is wrong.", ids, ElementKind::vertices),
+                                                            for_tooth(34), input, {"welded"}));
   const json wanted = schema();
   expect_required(report, wanted["then"]["required"], wanted["properties"]);
   const json& refused = report["refused"];
   EXPECT_EQ(refused["exit_code"], 3);
-  EXPECT_EQ(refused["sentence"], "These vertices are wrong.");
+  EXPECT_EQ(refused["sentence"], "This is wrong.");
   EXPECT_EQ(refused["ids_are"], "vertices");
   ASSERT_EQ(refused["ids"].size(), 210U);
   EXPECT_EQ(refused["ids"][209], 209);
   EXPECT_EQ(report["warnings"], json({"welded"}));
   EXPECT_TRUE(report["input"]["sha256"].is_null());
   const auto triangles = json::parse(completion_refusal_report(
-      InputError("The surface cuts itself (pairs of triangles).", {4, 5}), for_tooth(34), input));
+      InputError("The surface cuts itself.", {4, 5}, ElementKind::triangle_pairs), for_tooth(34), input));
   EXPECT_EQ(triangles["refused"]["ids_are"], "pairs of triangles");
   EXPECT_EQ(triangles["refused"]["ids"], json({4, 5}));
+  // the words of a sentence say nothing of its ids
+  const auto lines = json::parse(completion_refusal_report(
+      InputError("line 9: a triangle names vertices that do not exist", {9}), for_tooth(34), input));
+  EXPECT_TRUE(lines["refused"]["ids_are"].is_null());
 }
 
 TEST(Report, WhatItExcusesIsReadBackInTheMeshsNumbers) {

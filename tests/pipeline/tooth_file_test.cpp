@@ -4,6 +4,7 @@
 #include "rhizodont/tooth_file.hpp"
 
 #include "pipeline/product_models.hpp"
+#include "rhizodont/report.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,6 +27,7 @@ CompletedTooth small_tooth() {
   record.repairs = {{"merged", {1}, {5}, {3}}};
   record.promises.crown.dropped_vertices = {1, 3};
   record.warnings = {"first"};
+  record.missed_places = {{"A sharp angle.", {1, 2}}};
   return tooth;
 }
 
@@ -52,12 +54,38 @@ TEST(ToothFile, ColoursOfTheScanAreCarried) {
   EXPECT_EQ(file.vertex_attributes.size(), 5U);
 }
 
+TEST(ToothFile, ColoursAsFloatsGoTo1OrTo255) {
+  using enum AttributeType;
+  const auto red_of = [](double green) {
+    const MeshFile crown = crown_with(
+        {{"red", {float32, {0, 1, 1, 0}}}, {"green", {float32, {0, 0, green, 0}}}, {"blue", {float32, {0, 0, 0, 0}}}});
+    return tooth_file(small_tooth(), crown).vertex_attributes.at("red").values[1];
+  };
+  EXPECT_EQ(red_of(1), 255);
+  EXPECT_EQ(red_of(200), 1) << "no channel is a share of 255 if one of them is none";
+}
+
+TEST(ToothFile, StlThatCannotHoldItIsRefused) {
+  CompletedTooth tooth = small_tooth();
+  EXPECT_NO_THROW(require_format_holds(tooth, "a.stl"));
+  tooth.mesh.vertices[3].x() = 8e4 + 1e-7;
+  EXPECT_NO_THROW(require_format_holds(tooth, "a.ply"));
+  for (const char* name : {"a.stl", "a.GLB"}) {
+    try {
+      require_format_holds(tooth, name);
+      ADD_FAILURE() << name << " holds floats only";
+    } catch (const NoResultError& error) {
+      EXPECT_NE(std::string(error.what()).find("Move the scan to the origin"), std::string::npos);
+    }
+  }
+}
+
 TEST(ToothFile, WithoutColoursThereAreNone) {
   using enum AttributeType;
   for (const MeshFile& crown :
        {crown_with({}), crown_with({{"red", {uint8, {1, 2, 3, 4}}}}),
         crown_with(
-            {{"red", {float64, {9, 2, 3, 4}}}, {"green", {uint8, {1, 2, 3, 4}}}, {"blue", {uint8, {1, 2, 3, 4}}}})}) {
+            {{"red", {float64, {900, 2, 3, 4}}}, {"green", {uint8, {1, 2, 3, 4}}}, {"blue", {uint8, {1, 2, 3, 4}}}})}) {
     const MeshFile file = tooth_file(small_tooth(), crown);
     EXPECT_EQ(file.vertex_attributes.size(), 2U);
     EXPECT_EQ(file.comments.size(), 3U);
@@ -70,22 +98,24 @@ TEST(ToothFile, RecordsNameTheFilesOwnVertices) {
   CompletionRecord record = small_tooth().record;
   refer_to_file(record, crown, "a.ply");
   EXPECT_EQ(record.kept_vertices, (std::vector<int>{0, 2}));  // the same numbers in mesh and file
-  EXPECT_EQ(record.warnings, (std::vector<std::string>{"welded", "first"}));
+  EXPECT_EQ(all_warnings(record),
+            (std::vector<std::string>{"welded", "first", "A sharp angle. It is beside the crown's vertices 1, 2."}));
   crown.file_vertices = {0, 10, 20, 30};
   record = small_tooth().record;
   refer_to_file(record, crown, "a.ply");
   EXPECT_EQ(record.kept_vertices, (std::vector<int>{0, 20}));
+  EXPECT_EQ(all_warnings(record).back(), "A sharp angle. It is beside the crown's vertices 10, 20.");
   EXPECT_EQ(record.dropped_vertices[0].vertex, 10);
   EXPECT_EQ(record.dropped_vertices[1].vertex, 30);
   EXPECT_EQ(record.repairs[0].vertices, std::vector<int>{10});
   EXPECT_EQ(record.repairs[0].merged_into, std::vector<int>{30});
   EXPECT_EQ(record.repairs[0].triangles, std::vector<int>{5});
   EXPECT_EQ(record.promises.crown.dropped_vertices, (std::vector<int>{10, 30}));
-  EXPECT_EQ(in_terms_of_file(InputError("Edges (pairs of vertices).", {1, 3}), crown).elements(),
+  EXPECT_EQ(in_terms_of_file(InputError("What is wrong.", {1, 3}, ElementKind::vertex_pairs), crown).elements(),
             (std::vector<std::int64_t>{10, 30}));
-  EXPECT_EQ(in_terms_of_file(InputError("Openings (ids of vertices).", {2}), crown).elements(),
+  EXPECT_EQ(in_terms_of_file(InputError("What is wrong.", {2}, ElementKind::vertices), crown).elements(),
             (std::vector<std::int64_t>{20}));
-  EXPECT_EQ(in_terms_of_file(InputError("Cuts (pairs of triangles).", {1, 3}), crown).elements(),
+  EXPECT_EQ(in_terms_of_file(InputError("What is wrong.", {1, 3}, ElementKind::triangle_pairs), crown).elements(),
             (std::vector<std::int64_t>{1, 3}));
 }
 
@@ -98,6 +128,10 @@ TEST(ToothFile, LostColoursAreSaid) {
     refer_to_file(record, crown, output);
     EXPECT_EQ(record.warnings.size(), said ? 1U : 0U) << output;
   }
+  CompletionRecord record;
+  refer_to_file(record, crown_with({{"red", {int32, {1, 2, 3, 400}}}, {"green", part}, {"blue", part}}), "a.ply");
+  ASSERT_EQ(record.warnings.size(), 1U);
+  EXPECT_NE(record.warnings[0].find("not between 0 and 255"), std::string::npos);
 }
 
 TEST(ToothFile, ACrownOfLooseTrianglesIsTheSameTooth) {
