@@ -139,11 +139,7 @@ Figures on real teeth: `rhizodont evaluate`.
 
 void export_weights(const TrainCommand& command) {
   const std::filesystem::path path = command.export_to;
-  std::filesystem::path card = path;
-  card.replace_extension(".md");
-  require_no_mesh_ending(path, "a weight file");
-  require_new({card}, command.overwrite);
-  require_safe_outputs(files_below(command.options.folder), {path, card});
+  const std::filesystem::path card = require_safe_export(path, command.options.folder, command.overwrite);
   const TensorFile exported = export_completion(
       command.options.folder,
       {{"training.date", fmt::format("{:%F}", fmt::localtime(std::time(nullptr)))},

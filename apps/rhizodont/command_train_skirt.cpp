@@ -126,11 +126,7 @@ border is cleaned:
 
 void export_weights(const TrainSkirtCommand& command) {
   const std::filesystem::path path = command.export_to;
-  std::filesystem::path card = path;
-  card.replace_extension(".md");
-  require_no_mesh_ending(path, "a weight file");
-  require_new({card}, command.overwrite);
-  require_safe_outputs(files_below(command.options.folder), {path, card});
+  const std::filesystem::path card = require_safe_export(path, command.options.folder, command.overwrite);
   const TensorFile exported = export_surface(
       command.options.folder,
       {{"training.date", fmt::format("{:%F}", fmt::localtime(std::time(nullptr)))},

@@ -58,4 +58,13 @@ std::vector<fs::path> files_below(const fs::path& folder) {
   return files;
 }
 
+fs::path require_safe_export(const fs::path& weights, const fs::path& folder, bool overwrite) {
+  fs::path card = weights;
+  card.replace_extension(".md");
+  require_no_mesh_ending(weights, "a weight file");
+  require_new({card}, overwrite);
+  require_safe_outputs(files_below(folder), {weights, card});
+  return card;
+}
+
 }  // namespace rhizodont::command_line

@@ -27,6 +27,12 @@ void require_no_mesh_ending(const std::filesystem::path& output, const std::stri
 /// UsageError.
 void require_new(const std::vector<std::filesystem::path>& outputs, bool overwrite);
 
+/// Before weights and the model card beside them are exported from a training folder: `weights` has not the name of a
+/// mesh, neither is a file of the folder, and an older card is replaced only if the user said so. Returns the card's
+/// place. Throws UsageError or OutputError.
+std::filesystem::path require_safe_export(const std::filesystem::path& weights, const std::filesystem::path& folder,
+                                          bool overwrite);
+
 /// All files in a folder and below it; none if there is no such folder.
 std::vector<std::filesystem::path> files_below(const std::filesystem::path& folder);
 

@@ -7,6 +7,7 @@
 // furcation. Simplification: P. Lindstrom, G. Turk, "Fast and memory efficient polygonal simplification", 1998 (CGAL).
 #include "atlas/tooth_template.hpp"
 
+#include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/principal_axis.hpp"
@@ -104,14 +105,6 @@ JunctionHeight fit_junction(const std::vector<Point>& points) {
   return junction;
 }
 
-int find_set(std::vector<int>& parent, int v) {
-  while (parent[static_cast<std::size_t>(v)] != v) {
-    parent[static_cast<std::size_t>(v)] = parent[static_cast<std::size_t>(parent[static_cast<std::size_t>(v)])];
-    v = parent[static_cast<std::size_t>(v)];
-  }
-  return v;
-}
-
 std::vector<std::vector<int>> vertex_neighbours(const TriangleMesh& mesh) {
   std::vector<std::vector<int>> neighbours(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles)
@@ -150,7 +143,8 @@ void find_roots(FamilyTemplate& tooth) {
   const auto z = [&vertices](int v) { return vertices[static_cast<std::size_t>(v)].z(); };
   std::sort(order.begin(), order.end(), [&](int a, int b) { return z(a) != z(b) ? z(a) < z(b) : a < b; });
 
-  std::vector<int> parent(vertices.size(), -1), lowest(vertices.size(), -1);
+  DisjointSets parts(vertices.size());
+  std::vector<int> lowest(vertices.size(), -1);  // of a part, at the vertex that stands for it; -1: not reached yet
   std::vector<std::vector<int>> members(vertices.size());
   std::vector<bool> closed(vertices.size(), false);  // set has met another lasting one: no longer a single root
   tooth.root.assign(vertices.size(), -1);
@@ -168,12 +162,11 @@ void find_roots(FamilyTemplate& tooth) {
   };
   for (int v : order) {
     if (z(v) > 0) break;
-    parent[static_cast<std::size_t>(v)] = v;
     lowest[static_cast<std::size_t>(v)] = v;
     members[static_cast<std::size_t>(v)] = {v};
     for (int w : neighbours[static_cast<std::size_t>(v)]) {
-      if (parent[static_cast<std::size_t>(w)] < 0) continue;
-      int a = find_set(parent, v), b = find_set(parent, w);
+      if (lowest[static_cast<std::size_t>(w)] < 0) continue;
+      int a = parts.find(v), b = parts.find(w);
       if (a == b) continue;
       const double depth_a = z(v) - z(lowest[static_cast<std::size_t>(a)]);
       const double depth_b = z(v) - z(lowest[static_cast<std::size_t>(b)]);
@@ -183,7 +176,7 @@ void find_roots(FamilyTemplate& tooth) {
         close(b);
       }
       if (z(lowest[static_cast<std::size_t>(b)]) < z(lowest[static_cast<std::size_t>(a)])) std::swap(a, b);
-      parent[static_cast<std::size_t>(b)] = a;
+      parts.join(b, a);
       auto& into = members[static_cast<std::size_t>(a)];
       auto& from = members[static_cast<std::size_t>(b)];
       into.insert(into.end(), from.begin(), from.end());

@@ -4,6 +4,7 @@
 
 #include "io/notes.hpp"
 #include "mesh/disjoint_sets.hpp"
+#include "mesh/places.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -13,14 +14,6 @@ namespace rhizodont {
 namespace {
 
 using Place = std::int32_t;  // the first vertex with the same coordinates
-
-std::vector<Place> places_of(const std::vector<Point>& vertices) {
-  EqualPoints points(vertices.size());
-  std::vector<Place> places(vertices.size());
-  for (std::size_t v = 0; v < vertices.size(); ++v)
-    places[v] = points.number_or(vertices[v], static_cast<std::int32_t>(v));
-  return places;
-}
 
 /// An edge of a triangle: its ends' places, lower first, and the vertices there.
 struct Side {
@@ -39,7 +32,7 @@ struct Corners {
 class SeamWelder {
  public:
   explicit SeamWelder(const TriangleMesh& mesh)
-      : mesh_(mesh), places_(places_of(mesh.vertices)), merged_(mesh.vertices.size()) {
+      : mesh_(mesh), places_(first_at_place(mesh.vertices)), merged_(mesh.vertices.size()) {
     is_shared_.assign(places_.size(), false);
     for (std::size_t v = 0; v < places_.size(); ++v)
       if (static_cast<std::size_t>(place(static_cast<std::int32_t>(v))) != v) is_shared_[at(places_[v])] = true;
@@ -135,17 +128,13 @@ std::size_t EqualPoints::Hash::operator()(const Key& key) const {
   return h;
 }
 
-std::int32_t EqualPoints::number_or(const Point& point, std::int32_t number) {
+std::int32_t EqualPoints::number_in(const Point& point, std::vector<Point>& points) {
   Key key{};
   for (std::size_t i = 0; i < 3; ++i)
     key[i] = std::bit_cast<std::uint64_t>(point[static_cast<Eigen::Index>(i)] + 0.0);  // -0 becomes +0
-  return numbers_.try_emplace(key, number).first->second;
-}
-
-std::int32_t EqualPoints::number_in(const Point& point, std::vector<Point>& points) {
-  const std::int32_t number = number_or(point, static_cast<std::int32_t>(points.size()));
-  if (static_cast<std::size_t>(number) == points.size()) points.push_back(point);
-  return number;
+  const auto [place, is_new] = numbers_.try_emplace(key, static_cast<std::int32_t>(points.size()));
+  if (is_new) points.push_back(point);
+  return place->second;
 }
 
 void weld_seams(MeshFile& file) {

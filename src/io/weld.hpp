@@ -11,15 +11,14 @@
 
 namespace rhizodont {
 
-/// Points known by the bits of their coordinates, with -0 and +0 the same.
+/// Points known by the bits of their coordinates, with -0 and +0 the same, as they come in one after the other; of
+/// points that are all there `first_at_place` tells the same.
 class EqualPoints {
  public:
   explicit EqualPoints(std::size_t expected_points) { numbers_.reserve(expected_points + 16); }
 
-  /// The number of a point equal to this one; if there is none, this one gets `number`.
-  std::int32_t number_or(const Point& point, std::int32_t number);
-
-  /// As `number_or`; a new point is appended to `points`, where its place is its number.
+  /// The place in `points` of a point equal to this one; if there is none, this one is appended. All points are new to
+  /// `points` by this alone.
   std::int32_t number_in(const Point& point, std::vector<Point>& points);
 
  private:

@@ -3,7 +3,9 @@
 #include "mesh/diagnosis.hpp"
 
 #include "mesh/adjacency.hpp"
+#include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/places.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
@@ -11,7 +13,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <numeric>
 
 namespace rhizodont {
 namespace {
@@ -47,21 +48,19 @@ Usable sort_out_indices(const TriangleMesh& mesh, Diagnosis& found) {
 }
 
 void find_duplicate_vertices(const TriangleMesh& mesh, Diagnosis& found) {
-  std::vector<int> order;
+  std::vector<int> finite;
+  std::vector<Point> points;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (mesh.vertices[v].allFinite())
-      order.push_back(static_cast<int>(v));
-    else
+    if (!mesh.vertices[v].allFinite()) {
       found.non_finite_vertices.push_back(static_cast<int>(v));
+      continue;
+    }
+    finite.push_back(static_cast<int>(v));
+    points.push_back(mesh.vertices[v]);
   }
-  const auto at = [&](int v) -> const Point& { return mesh.vertices[static_cast<std::size_t>(v)]; };
-  std::sort(order.begin(), order.end(), [&](int i, int j) {
-    if (at(i) == at(j)) return i < j;
-    return std::lexicographical_compare(at(i).data(), at(i).data() + 3, at(j).data(), at(j).data() + 3);
-  });
-  for (std::size_t k = 1; k < order.size(); ++k)
-    if (at(order[k]) == at(order[k - 1])) found.duplicate_vertices.push_back(order[k]);
-  std::sort(found.duplicate_vertices.begin(), found.duplicate_vertices.end());
+  const std::vector<int> first = first_at_place(points);
+  for (std::size_t k = 0; k < finite.size(); ++k)
+    if (first[k] != static_cast<int>(k)) found.duplicate_vertices.push_back(finite[k]);
 }
 
 void find_bad_triangles(const Usable& usable, Diagnosis& found) {
@@ -98,26 +97,6 @@ void find_bad_edges(const TriangleMesh& mesh, const EdgeTable& table, Diagnosis&
   std::sort(found.misoriented_edges.begin(), found.misoriented_edges.end());
 }
 
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size), count_(static_cast<int>(size)) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int find(int x) {
-    while (parent_[static_cast<std::size_t>(x)] != x) x = parent_[static_cast<std::size_t>(x)];
-    return x;
-  }
-  void join(int a, int b) {
-    a = find(a), b = find(b);
-    if (a != b) parent_[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b), --count_;
-  }
-  int count() const { return count_; }
-
- private:
-  std::vector<int> parent_;
-  int count_;
-};
-
 // The triangles around v are one fan if the sides opposite to v hang together.
 bool is_one_fan(const TriangleMesh& mesh, const VertexTriangles& around, int v) {
   std::vector<int> link;
@@ -133,8 +112,9 @@ bool is_one_fan(const TriangleMesh& mesh, const VertexTriangles& around, int v) 
     return static_cast<int>(std::lower_bound(names.begin(), names.end(), w) - names.begin());
   };
   DisjointSets sets(names.size());
-  for (std::size_t k = 0; k < link.size(); k += 2) sets.join(place(link[k]), place(link[k + 1]));
-  return sets.count() == 1;
+  std::size_t count = names.size();
+  for (std::size_t k = 0; k < link.size(); k += 2) count -= sets.join(place(link[k]), place(link[k + 1])) ? 1 : 0;
+  return count == 1;
 }
 
 void look_at_vertices(const TriangleMesh& mesh, Diagnosis& found) {
@@ -149,20 +129,13 @@ void look_at_vertices(const TriangleMesh& mesh, Diagnosis& found) {
 
 // Pieces of the graph that the given edges span (vertices without an edge do not count).
 int count_pieces(std::size_t vertex_count, const std::vector<std::array<int, 2>>& edges) {
-  std::vector<int> parent(vertex_count, -1);
-  const auto find = [&](int x) {
-    while (parent[static_cast<std::size_t>(x)] != x) {
-      int& up = parent[static_cast<std::size_t>(x)];
-      x = up = parent[static_cast<std::size_t>(up)];
-    }
-    return x;
-  };
+  DisjointSets sets(vertex_count);
+  std::vector<bool> seen(vertex_count, false);
   int pieces = 0;
   for (const auto& edge : edges) {
     for (const int v : edge)
-      if (parent[static_cast<std::size_t>(v)] < 0) parent[static_cast<std::size_t>(v)] = v, ++pieces;
-    const int a = find(edge[0]), b = find(edge[1]);
-    if (a != b) parent[static_cast<std::size_t>(a)] = b, --pieces;
+      if (!seen[static_cast<std::size_t>(v)]) seen[static_cast<std::size_t>(v)] = true, ++pieces;
+    if (sets.join(edge[0], edge[1])) --pieces;
   }
   return pieces;
 }

@@ -22,7 +22,13 @@ class DisjointSets {
     }
     return x;
   }
-  void join(int a, int b) { parent_[static_cast<std::size_t>(find(a))] = find(b); }
+  /// The member that stands for b's set stands for both from then on. False if they were one already.
+  bool join(int a, int b) {
+    a = find(a);
+    b = find(b);
+    parent_[static_cast<std::size_t>(a)] = b;
+    return a != b;
+  }
 
  private:
   std::vector<int> parent_;

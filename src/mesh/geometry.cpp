@@ -6,7 +6,9 @@
 #include "mesh/adjacency.hpp"
 #include "rhizodont/error.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rhizodont {
 namespace {
@@ -104,6 +106,16 @@ Eigen::AlignedBox3d bounding_box(const std::vector<Point>& points) {
   Eigen::AlignedBox3d box;
   for (const Point& point : points) box.extend(point);
   return box;
+}
+
+std::pair<double, double> extent_along(const std::vector<Point>& points, const Eigen::Vector3d& axis) {
+  double low = std::numeric_limits<double>::max();
+  double high = std::numeric_limits<double>::lowest();
+  for (const Point& p : points) {
+    low = std::min(low, p.dot(axis));
+    high = std::max(high, p.dot(axis));
+  }
+  return {low, high};
 }
 
 double mean_edge_length(const TriangleMesh& mesh) {

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace rhizodont {
@@ -44,6 +45,9 @@ std::vector<Eigen::Vector3d> vertex_normals(const TriangleMesh& mesh);
 
 /// Empty box for no points.
 Eigen::AlignedBox3d bounding_box(const std::vector<Point>& points);
+
+/// Least and largest place of points along an axis; the largest double and the least for none.
+std::pair<double, double> extent_along(const std::vector<Point>& points, const Eigen::Vector3d& axis);
 
 /// Mean length of the undirected edges in mm; 0 for a mesh without triangles.
 double mean_edge_length(const TriangleMesh& mesh);

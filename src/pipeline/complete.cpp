@@ -129,16 +129,6 @@ void note_fusion(const FusedTooth& fused, CompletionRecord& record) {
   record.warnings.insert(record.warnings.end(), fused.warnings.begin(), fused.warnings.end());
 }
 
-std::pair<double, double> extent_along(const std::vector<Point>& points, const Eigen::Vector3d& axis) {
-  double low = std::numeric_limits<double>::max();
-  double high = std::numeric_limits<double>::lowest();
-  for (const Point& p : points) {
-    low = std::min(low, p.dot(axis));
-    high = std::max(high, p.dot(axis));
-  }
-  return {low, high};
-}
-
 void note_lengths(const TriangleMesh& crown, const TriangleMesh& tooth, CompletionRecord& record) {
   const auto [tooth_low, tooth_high] = extent_along(tooth.vertices, record.growth_axis);
   record.root_length_mm = extent_along(crown.vertices, record.growth_axis).first - tooth_low;

@@ -11,20 +11,11 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <limits>
 #include <numbers>
 #include <vector>
 
 namespace rhizodont {
 namespace {
-
-/// Lowest place of the crown along an axis, mm.
-double lowest(const TriangleMesh& crown, const Eigen::Vector3d& axis) {
-  double low = std::numeric_limits<double>::max();
-  for (const Triangle& t : crown.triangles)
-    for (const int v : t) low = std::min(low, crown.vertices[static_cast<std::size_t>(v)].dot(axis));
-  return low;
-}
 
 Eigen::Vector3d axis_of(const CrownFrame& frame) { return frame.frame.direction_to_world(Eigen::Vector3d::UnitZ()); }
 
@@ -88,7 +79,7 @@ PredictedTooth mean_tooth_on(int fdi, const RigidFit& fit, const CompletionModel
 
 Solidity root_solidity(const TriangleMesh& crown, const PredictedTooth& tooth, const CrownFrame& frame) {
   const Eigen::Vector3d axis = axis_of(frame);
-  return solidity(tooth, axis, lowest(crown, axis));
+  return solidity(tooth, axis, extent_along(crown.vertices, axis).first);
 }
 
 }  // namespace
@@ -138,7 +129,7 @@ RootPrediction predict_tooth(const TriangleMesh& crown, int fdi, const CrownFram
 bool root_tapers(const TriangleMesh& surface, const TriangleMesh& crown, const CrownFrame& frame) {
   constexpr double most_swelling = 1.25;  // far from both kinds: see `swelling`
   const Eigen::Vector3d axis = axis_of(frame);
-  return swelling(surface, axis, lowest(crown, axis)) <= most_swelling;
+  return swelling(surface, axis, extent_along(crown.vertices, axis).first) <= most_swelling;
 }
 
 }  // namespace rhizodont
