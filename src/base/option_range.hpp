@@ -9,7 +9,8 @@
 
 namespace rhizodont {
 
-/// Where the value of an option may lie; what is not a number, and without an upper bound what is infinite, lies outside.
+/// Where the value of an option may lie; what is not a number, and without an upper bound what is infinite, lies
+/// outside.
 class OptionRange {
  public:
   static constexpr OptionRange at_least(double low) { return {low, true}; }
@@ -37,8 +38,9 @@ inline constexpr OptionRange share_range = OptionRange::at_least(0).at_most(1);
 /// An option's value beside where it may lie.
 struct RangedOption {
   template <class Number>
-    requires std::integral<Number> || std::floating_point<Number>
-  RangedOption(std::string_view the_name, Number the_value, const OptionRange& the_range)
+  requires std::integral<Number> || std::floating_point<Number> RangedOption(std::string_view the_name,
+                                                                             Number the_value,
+                                                                             const OptionRange& the_range)
       : name(the_name), value(static_cast<double>(the_value)), range(the_range) {}
 
   std::string_view name;  ///< as the options struct has it

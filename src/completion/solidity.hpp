@@ -19,8 +19,8 @@ Solidity solidity(const PredictedTooth& predicted, const Eigen::Vector3d& growth
 
 /// How far a root grows again on its way to the apex: the largest ratio of a cross-section, all its roots together, to
 /// the smallest one that lies nearer to the crown. 1 for a root that only tapers, as the 16 template teeth do within
-/// half a percent. Crumbs and drops hanging on threads have 1.5 and more; infinite where there is no root. `level`: of the crown's lowest place, mm
-/// along `growth_axis`. Precondition: `tooth` closed and oriented.
+/// half a percent. Crumbs and drops hanging on threads have 1.5 and more; infinite where there is no root. `level`: of
+/// the crown's lowest place, mm along `growth_axis`. Precondition: `tooth` closed and oriented.
 double swelling(const TriangleMesh& tooth, const Eigen::Vector3d& growth_axis, double level);
 
 /// How bad it is: 1 is the bound beyond which no root is made of the points; infinite where there are hardly any below

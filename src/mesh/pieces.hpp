@@ -12,12 +12,12 @@
 namespace rhizodont {
 
 struct PieceOptions {
-  double speck_area = 0.01;        ///< [0, 1): a piece of less than this share of the largest one's area and
-  double speck_triangles = 0.02;   ///< [0, 1): at most this share of its triangles is a speck; a single triangle always
-                                   ///< is beside a piece of 50 or more; what lies along a seam never is
-  double all_specks = 0.05;        ///< [0, 1): with more triangles than this share of the mesh's in specks all together
-                                   ///< it is no crown with specks but a crown in shreds: none is a speck then
-  double like_share = 0.2;         ///< (0, 1]: a piece of at least this share of the largest one's area is of like size
+  double speck_area = 0.01;       ///< [0, 1): a piece of less than this share of the largest one's area and
+  double speck_triangles = 0.02;  ///< [0, 1): at most this share of its triangles is a speck; a single triangle always
+                                  ///< is beside a piece of 50 or more; what lies along a seam never is
+  double all_specks = 0.05;       ///< [0, 1): with more triangles than this share of the mesh's in specks all together
+                                  ///< it is no crown with specks but a crown in shreds: none is a speck then
+  double like_share = 0.2;        ///< (0, 1]: a piece of at least this share of the largest one's area is of like size
 };
 
 /// What a piece is beside the largest one.

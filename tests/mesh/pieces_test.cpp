@@ -54,7 +54,8 @@ TEST(Pieces, APatchBehindASeamIsNoSpeckHoweverSmall) {
   const TriangleMesh patch = submesh(whole, in_patch).mesh, hole = submesh(whole, rest).mesh;
   EXPECT_TRUE(drop_specks(test::together(hole, patch, Point(1e-6, 0, 0))).steps.empty());
   EXPECT_TRUE(drop_specks(test::together(patch, hole, Point(1e-6, 0, 0))).steps.empty());
-  EXPECT_FALSE(drop_specks(test::together(hole, patch, Point(0, 0, 3))).steps.empty()) << "far from its place it is one";
+  EXPECT_FALSE(drop_specks(test::together(hole, patch, Point(0, 0, 3))).steps.empty())
+      << "far from its place it is one";
 }
 
 TEST(Pieces, ATriangleHangingOnACornerIsASpeckAndTheCornerStays) {
