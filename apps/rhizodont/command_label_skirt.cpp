@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "atlas/skirt_sample.hpp"
 #include "commands.hpp"
 #include "output_checks.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "training/skirt_sample.hpp"
 
 #include <fmt/core.h>
 

@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "commands.hpp"
-#include "evaluation/json.hpp"
 #include "json_option.hpp"
 #include "output_checks.hpp"
+#include "report/json.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/measure.hpp"
 

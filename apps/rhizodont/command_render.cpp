@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "commands.hpp"
-#include "evaluation/render.hpp"
 #include "mesh/geometry.hpp"
 #include "output_checks.hpp"
+#include "pictures/render.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 

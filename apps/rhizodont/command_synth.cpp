@@ -1,16 +1,17 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "atlas/crown_crop.hpp"
-#include "atlas/mean_teeth.hpp"
-#include "atlas/scanner_mesh.hpp"
-#include "atlas/skirt_sample.hpp"
-#include "atlas/tooth_family.hpp"
+#include "base/float_bits.hpp"
 #include "commands.hpp"
-#include "evaluation/render.hpp"
-#include "mesh/float_bits.hpp"
+#include "families/crown_crop.hpp"
+#include "families/mean_teeth.hpp"
+#include "families/scanner_mesh.hpp"
+#include "families/tooth_family.hpp"
 #include "output_checks.hpp"
+#include "pictures/render.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "teeth/fdi.hpp"
+#include "training/skirt_sample.hpp"
 
 #include <fmt/core.h>
 

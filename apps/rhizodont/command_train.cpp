@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "atlas/completion_sample.hpp"
 #include "commands.hpp"
+#include "families/completion_sample.hpp"
 #include "learning/blas.hpp"
 #include "learning/safetensors.hpp"
 #include "learning/train_completion.hpp"

@@ -1,6 +1,5 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "atlas/skirt_sample.hpp"
 #include "commands.hpp"
 #include "learning/blas.hpp"
 #include "learning/safetensors.hpp"
@@ -10,6 +9,7 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/output_files.hpp"
 #include "skirt/skirt_features.hpp"
+#include "training/skirt_sample.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>

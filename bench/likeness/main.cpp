@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Trains the network by which crowns are judged, and says how often the judgement is wrong.
-#include "atlas/likeness_samples.hpp"
-#include "atlas/tooth_family.hpp"
-#include "atlas/unlike_crowns.hpp"
 #include "completion/likeness.hpp"
+#include "families/tooth_family.hpp"
+#include "families/unlike_crowns.hpp"
+#include "intake/take_crown.hpp"
 #include "learning/train_classifier.hpp"
 #include "pipeline/crown_likeness.hpp"
 #include "pipeline/models.hpp"
-#include "pipeline/take_crown.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "teeth/fdi.hpp"
+#include "training/likeness_samples.hpp"
 
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>

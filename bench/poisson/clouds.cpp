@@ -9,6 +9,7 @@
 #include "common/bench_teeth.hpp"
 #include "completion/complete_points.hpp"
 #include "pipeline/models.hpp"
+#include "teeth/fdi.hpp"
 
 namespace rhizodont {
 

@@ -5,12 +5,13 @@
 // on, each with one thing made worse by steps while all else stays as it is.
 // usage: bench_robustness DATA_FOLDER MODELS_FOLDER [CSV] [TEETH_PER_TYPE=2] [FACTOR]
 
-#include "atlas/completion_sample.hpp"
-#include "atlas/scanner_mesh.hpp"
 #include "evaluation/root_figures.hpp"
 #include "evaluation/template_predictor.hpp"
+#include "families/completion_sample.hpp"
+#include "families/scanner_mesh.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
 

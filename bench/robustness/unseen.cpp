@@ -7,9 +7,10 @@
 //
 // usage: bench_unseen DATA_FOLDER [TEETH_PER_TYPE=10]
 
-#include "atlas/completion_sample.hpp"
-#include "atlas/tooth_family.hpp"
 #include "evaluation/root_figures.hpp"
+#include "families/completion_sample.hpp"
+#include "families/tooth_family.hpp"
+#include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,6 @@
 
 // Finding the skirt: time by the crown's size, and whether a decimated copy does as well as the crown itself.
 //   bench_skirt DATA WEIGHTS
-#include "atlas/skirt_sample.hpp"
 #include "common/bench_teeth.hpp"
 #include "common/stopwatch.hpp"
 #include "mesh/adjacency.hpp"
@@ -12,6 +11,7 @@
 #include "skirt/skirt_border.hpp"
 #include "skirt/skirt_network.hpp"
 #include "skirt/spikes.hpp"
+#include "training/skirt_sample.hpp"
 
 #include <fmt/core.h>
 

@@ -7,6 +7,7 @@
 
 #include "learning/training_sample.hpp"
 #include "mesh/sampling.hpp"
+#include "teeth/fdi.hpp"
 
 namespace rhizodont {
 

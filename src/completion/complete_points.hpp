@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "completion/frame.hpp"
+#include "completion/registration.hpp"
 #include "learning/completion_network.hpp"
 #include "rhizodont/mesh.hpp"
 

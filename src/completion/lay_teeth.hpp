@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "completion/frame.hpp"
+#include "completion/mean_crowns.hpp"
+#include "completion/registration.hpp"
 #include "rhizodont/mesh.hpp"
 
 #include <cstddef>

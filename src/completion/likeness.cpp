@@ -6,8 +6,8 @@
 #include "completion/likeness.hpp"
 
 #include "completion/crown_panorama.hpp"
-#include "completion/frame.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/frame.hpp"
 
 #include <algorithm>
 #include <cmath>

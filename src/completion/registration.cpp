@@ -6,13 +6,14 @@
 // P. Krsek, "Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm", 2005;
 // similarity from pairs: S. Umeyama, "Least-squares estimation of transformation parameters between two point
 // patterns", 1991.
+#include "completion/registration.hpp"
 #include "base/option_range.hpp"
-#include "completion/frame.hpp"
 #include "completion/lay_teeth.hpp"
 #include "completion/oriented_clouds.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/fdi.hpp"
 
 #include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
@@ -295,6 +296,10 @@ void check_mean(const MeanCrown& mean) {
 }
 
 }  // namespace
+
+Eigen::Vector3d CrownFrame::form_direction() const {
+  return {form_axis.x(), form_axis.y(), std::sqrt(std::max(0.0, 1 - form_axis.squaredNorm()))};
+}
 
 CrownFrame canonical_frame(const TriangleMesh& open_crown, int fdi, const MeanCrown& mean,
                            const RegistrationOptions& options) {

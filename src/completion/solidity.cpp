@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "completion/solidity.hpp"
 
+#include "base/disjoint_sets.hpp"
 #include "mesh/cross_sections.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/nearest_vertex.hpp"
 
 #include <Eigen/Eigenvalues>

@@ -8,6 +8,7 @@
 #include "mesh/border_pieces.hpp"
 #include "mesh/smooth_functions.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>

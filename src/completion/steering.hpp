@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "completion/frame.hpp"
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/root_steering.hpp"
+#include "teeth/frame.hpp"
 
 #include <vector>
 

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "completion/crown_panorama.hpp"
-#include "completion/frame.hpp"
 #include "learning/safetensors.hpp"
+#include "teeth/fdi.hpp"
 
 #include <Eigen/Core>
 

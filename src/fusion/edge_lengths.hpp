@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "fusion/crown_border.hpp"
 #include "rhizodont/mesh.hpp"
+#include "teeth/crown_border.hpp"
 
 #include <Eigen/Geometry>
 

@@ -6,12 +6,12 @@
 #include "fusion/fuse.hpp"
 
 #include "base/option_range.hpp"
-#include "fusion/crown_border.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/crown_border.hpp"
 
 #include <fmt/format.h>
 

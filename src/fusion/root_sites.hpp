@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "fusion/crown_border.hpp"
 #include "fusion/edge_lengths.hpp"
 #include "fusion/surface_walk.hpp"
 #include "rhizodont/mesh.hpp"
+#include "teeth/crown_border.hpp"
 
 #include <vector>
 

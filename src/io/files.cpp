@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/float_bits.hpp"
 #include "io/attribute_types.hpp"
 #include "io/formats.hpp"
-#include "mesh/float_bits.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"

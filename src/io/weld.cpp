@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/weld.hpp"
 
+#include "base/disjoint_sets.hpp"
 #include "io/notes.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/places.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh/adjacency.hpp"
 
-#include "mesh/disjoint_sets.hpp"
+#include "base/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "rhizodont/error.hpp"

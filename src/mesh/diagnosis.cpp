@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh/diagnosis.hpp"
 
+#include "base/disjoint_sets.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/places.hpp"
 

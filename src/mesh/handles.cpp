@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mesh/handles.hpp"
 
-#include "mesh/disjoint_sets.hpp"
+#include "base/disjoint_sets.hpp"
 
 #include <array>
 

@@ -8,8 +8,8 @@
 
 #include "mesh/tunnels.hpp"
 
+#include "base/disjoint_sets.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/handles.hpp"
 
 #include <tbb/parallel_for.h>

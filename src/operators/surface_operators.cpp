@@ -6,8 +6,8 @@
 // N. Sharp, K. Crane, "A Laplacian for Nonmanifold Triangle Meshes", Computer Graphics Forum 39(5), 2020.
 #include "operators/surface_operators.hpp"
 
+#include "base/disjoint_sets.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "operators/intrinsic_triangulation.hpp"

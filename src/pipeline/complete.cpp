@@ -5,27 +5,28 @@
 
 #include "rhizodont/complete.hpp"
 
+#include "base/float_bits.hpp"
 #include "completion/complete_points.hpp"
 #include "completion/steering.hpp"
 #include "completion/uncertainty.hpp"
 #include "fusion/fuse.hpp"
+#include "guiding/fitted_surface.hpp"
+#include "guiding/guiding_cloud.hpp"
+#include "intake/part_of_mesh.hpp"
+#include "intake/take_crown.hpp"
 #include "mesh/closest_point.hpp"
-#include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
 #include "pipeline/crown_likeness.hpp"
-#include "pipeline/fitted_surface.hpp"
-#include "pipeline/guiding_cloud.hpp"
 #include "pipeline/missed_promise.hpp"
 #include "pipeline/models.hpp"
-#include "pipeline/part_of_mesh.hpp"
 #include "pipeline/prediction.hpp"
 #include "pipeline/report_parts.hpp"
 #include "pipeline/stage_clock.hpp"
-#include "pipeline/take_crown.hpp"
 #include "pipeline/way_out.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
 #include "skirt/skirt.hpp"
+#include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
 #include <tbb/task_arena.h>

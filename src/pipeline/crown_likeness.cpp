@@ -5,6 +5,7 @@
 
 #include "completion/mean_crown_agreement.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
 

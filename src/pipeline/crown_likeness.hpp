@@ -3,6 +3,7 @@
 #pragma once
 
 #include "completion/likeness.hpp"
+#include "completion/mean_crowns.hpp"
 #include "rhizodont/complete.hpp"
 
 #include <optional>

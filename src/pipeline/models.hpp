@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "completion/frame.hpp"
 #include "completion/likeness.hpp"
+#include "completion/mean_crowns.hpp"
 #include "learning/completion_network.hpp"
 #include "learning/surface_network.hpp"
 #include "rhizodont/complete.hpp"

@@ -7,6 +7,7 @@
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/fdi.hpp"
 
 #include <Eigen/Geometry>
 

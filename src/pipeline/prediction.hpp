@@ -3,7 +3,7 @@
 #pragma once
 
 #include "completion/complete_points.hpp"
-#include "completion/frame.hpp"
+#include "completion/registration.hpp"
 #include "completion/solidity.hpp"
 #include "pipeline/models.hpp"
 #include "rhizodont/complete.hpp"

@@ -6,11 +6,11 @@
 // never falls as a surface grows, so that the vertex that closes a handle is found by bisection.
 #include "skirt/ragged_part.hpp"
 
+#include "base/disjoint_sets.hpp"
 #include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/border_pieces.hpp"
 #include "mesh/diagnosis.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/edge_distance.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/handles.hpp"

@@ -6,10 +6,10 @@
 //   2003: boundaries between regions of a mesh as minimum cuts along bent edges.
 #include "skirt/skirt_border.hpp"
 
+#include "base/disjoint_sets.hpp"
 #include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/border_pieces.hpp"
-#include "mesh/disjoint_sets.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/handles.hpp"
 #include "rhizodont/error.hpp"

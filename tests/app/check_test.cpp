@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rhizodont/check.hpp"
 
-#include "evaluation/json.hpp"
+#include "base/float_bits.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/float_bits.hpp"
 #include "mesh/test_meshes.hpp"
+#include "report/json.hpp"
 #include "rhizodont/error.hpp"
 
 #include <gtest/gtest.h>

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The program as a user meets it: exit codes, what is said where, and what is written.
 #include "app/program.hpp"
+#include "base/float_bits.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/float_bits.hpp"
 #include "mesh/test_meshes.hpp"
 
 #include <nlohmann/json.hpp>

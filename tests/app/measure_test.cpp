@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rhizodont/measure.hpp"
 
-#include "evaluation/json.hpp"
 #include "mesh/test_meshes.hpp"
+#include "report/json.hpp"
 #include "rhizodont/error.hpp"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evaluation/render.hpp"
+#include "pictures/render.hpp"
 
 #include "mesh/test_meshes.hpp"
 #include "rhizodont/error.hpp"

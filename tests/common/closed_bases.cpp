@@ -3,7 +3,7 @@
 
 #include "common/closed_bases.hpp"
 
-#include "atlas/random_stream.hpp"
+#include "base/random_stream.hpp"
 #include "common/hostile_crowns.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"

@@ -3,9 +3,9 @@
 
 #include "common/hostile_crowns.hpp"
 
-#include "atlas/random_stream.hpp"
+#include "base/float_bits.hpp"
+#include "base/random_stream.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 

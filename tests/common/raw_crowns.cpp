@@ -3,11 +3,11 @@
 
 #include "common/raw_crowns.hpp"
 
-#include "atlas/random_stream.hpp"
+#include "base/disjoint_sets.hpp"
+#include "base/float_bits.hpp"
+#include "base/random_stream.hpp"
 #include "common/hostile_crowns.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/disjoint_sets.hpp"
-#include "mesh/float_bits.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 

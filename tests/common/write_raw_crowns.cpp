@@ -5,11 +5,11 @@
 // the number of kinds; all types of teeth in turn. One line each: file, FDI number, kind, Euler number, vertices where
 // the surface only touches itself, edges with more than two triangles.
 
-#include "atlas/skirt_sample.hpp"
 #include "common/raw_crowns.hpp"
-#include "completion/frame.hpp"
 #include "mesh/diagnosis.hpp"
 #include "rhizodont/io.hpp"
+#include "teeth/fdi.hpp"
+#include "training/skirt_sample.hpp"
 
 #include <fmt/format.h>
 

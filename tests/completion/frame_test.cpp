@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "completion/frame.hpp"
+#include "teeth/frame.hpp"
+#include "completion/mean_crowns.hpp"
 #include "learning/safetensors.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/fdi.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>

@@ -5,6 +5,7 @@
 #include "completion/mean_crown_agreement.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "teeth/fdi.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Runs on what the project ships: the crowns in samples/ and models/atlas.safetensors.
-#include "completion/frame.hpp"
+#include "completion/registration.hpp"
+#include "completion/mean_crowns.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "teeth/fdi.hpp"
+#include "teeth/frame.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

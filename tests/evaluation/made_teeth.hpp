@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/float_bits.hpp"
 #include "mesh/adjacency.hpp"
-#include "mesh/float_bits.hpp"
 #include "mesh/test_meshes.hpp"
 #include "rhizodont/mesh.hpp"
 

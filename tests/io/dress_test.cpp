@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One mesh in every dress that programs give it: each is the same mesh.
+#include "base/float_bits.hpp"
 #include "io/io_test_tools.hpp"
-#include "mesh/float_bits.hpp"
 #include "mesh/test_meshes.hpp"
 
 #include <Eigen/Geometry>

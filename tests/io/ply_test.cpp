@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/float_bits.hpp"
 #include "io/io_test_tools.hpp"
-#include "mesh/float_bits.hpp"
 #include "mesh/test_meshes.hpp"
 
 #include <cmath>

@@ -3,7 +3,7 @@
 
 #include "rhizodont/complete.hpp"
 
-#include "mesh/float_bits.hpp"
+#include "base/float_bits.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/test_meshes.hpp"
 #include "pipeline/product_models.hpp"

@@ -3,7 +3,7 @@
 
 #include "pipeline/crown_likeness.hpp"
 
-#include "atlas/unlike_crowns.hpp"
+#include "families/unlike_crowns.hpp"
 #include "mesh/geometry.hpp"
 #include "pipeline/models.hpp"
 #include "pipeline/product_models.hpp"

@@ -4,23 +4,22 @@
 // Every option that a caller can set, once out of its range on either side where it has two: refused by name before
 // anything else is looked at.
 
-#include "atlas/completion_sample.hpp"
-#include "atlas/skirt_sample.hpp"
-#include "atlas/tooth_family.hpp"
-#include "evaluation/render.hpp"
+#include "completion/registration.hpp"
 #include "evaluation/root_figures.hpp"
 #include "evaluation/template_predictor.hpp"
-#include "fusion/crown_border.hpp"
+#include "families/completion_sample.hpp"
+#include "families/tooth_family.hpp"
 #include "fusion/fuse.hpp"
-#include "isosurface/guiding_surface.hpp"
+#include "guiding/crown_fit.hpp"
+#include "guiding/guiding_cloud.hpp"
+#include "guiding/guiding_surface.hpp"
 #include "isosurface/iterative_poisson.hpp"
 #include "learning/train_completion.hpp"
 #include "learning/train_surface.hpp"
 #include "mesh/pieces.hpp"
 #include "mesh/repair.hpp"
 #include "mesh/test_meshes.hpp"
-#include "pipeline/crown_fit.hpp"
-#include "pipeline/guiding_cloud.hpp"
+#include "pictures/render.hpp"
 #include "pipeline/models.hpp"
 #include "pipeline/product_models.hpp"
 #include "poisson/orientation.hpp"
@@ -32,6 +31,8 @@
 #include "skirt/skirt_border.hpp"
 #include "skirt/skirt_network.hpp"
 #include "skirt/spikes.hpp"
+#include "teeth/crown_border.hpp"
+#include "training/skirt_sample.hpp"
 
 #include <gtest/gtest.h>
 

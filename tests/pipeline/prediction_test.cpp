@@ -8,6 +8,7 @@
 #include "pipeline/stage_clock.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "teeth/fdi.hpp"
 
 #include <gtest/gtest.h>
 

@@ -5,16 +5,16 @@
 // repair.
 
 #include "common/raw_crowns.hpp"
-#include "atlas/gum_flange.hpp"
 #include "common/hostile_crowns.hpp"
-#include "completion/frame.hpp"
+#include "families/gum_flange.hpp"
+#include "intake/crown_input.hpp"
 #include "mesh/border_pieces.hpp"
 #include "mesh/geometry.hpp"
-#include "pipeline/crown_input.hpp"
 #include "pipeline/product_models.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/frame.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "base/random_stream.hpp"
+#include "families/tooth_family.hpp"
+
+namespace rhizodont {
+
+/// Life's marks on a crown: wear of cusps and edges, a decay cavity or a lost corner, a bracket or attachment on the
+/// cheek's side. Moves vertices of `tooth.mesh` in place; needs mesh and crown labels, in the tooth's frame.
+void mark_crown(SyntheticTooth& tooth, const ToothVariation& variation, RandomStream& random);
+
+}  // namespace rhizodont

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "teeth/crown_border.hpp"
+
+#include "mesh/adjacency.hpp"
+#include "mesh/geometry.hpp"
+#include "rhizodont/error.hpp"
+
+#include <tbb/parallel_for.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace rhizodont {
+bool lies_on_border(const TriangleMesh& crown, const CrownBorder& border, const ClosestPoint& closest) {
+  const Triangle& t = crown.triangles[static_cast<std::size_t>(closest.triangle)];
+  const double tolerance = 1e-7 * border.mean_edge;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto a = static_cast<std::size_t>(t[i]);
+    const Point& pa = crown.vertices[a];
+    if (border.is_vertex[a] && (closest.point - pa).norm() <= tolerance) return true;
+    if (!border.is_edge[static_cast<std::size_t>(closest.triangle)][i]) continue;
+    const Eigen::Vector3d along = crown.vertices[static_cast<std::size_t>(t[(i + 1) % 3])] - pa;
+    if ((closest.point - pa).cross(along).norm() <= tolerance * along.norm()) return true;
+  }
+  return false;
+}
+
+namespace {
+
+/// Smallest angle in degrees between consecutive border edges where the crown takes up more than half a turn.
+double sharpest_notch(const TriangleMesh& crown, const CrownBorder& border) {
+  constexpr double degrees = 180 / std::numbers::pi;
+  std::vector<double> turn(crown.vertices.size(), 0);
+  for (std::size_t t = 0; t < crown.triangles.size(); ++t) {
+    const auto angles = triangle_angles(crown, t);
+    for (std::size_t i = 0; i < 3; ++i) turn[static_cast<std::size_t>(crown.triangles[t][i])] += angles[i] * degrees;
+  }
+  std::vector<int> before(crown.vertices.size(), -1);
+  for (const auto& [from, to] : border.half_edges) before[static_cast<std::size_t>(to)] = from;
+  double sharpest = 180;
+  for (const auto& [v, next] : border.half_edges) {
+    const int previous = before[static_cast<std::size_t>(v)];
+    if (turn[static_cast<std::size_t>(v)] <= 180 || previous < 0) continue;
+    const Eigen::Vector3d a =
+        crown.vertices[static_cast<std::size_t>(previous)] - crown.vertices[static_cast<std::size_t>(v)];
+    const Eigen::Vector3d b =
+        crown.vertices[static_cast<std::size_t>(next)] - crown.vertices[static_cast<std::size_t>(v)];
+    sharpest = std::min(sharpest, std::atan2(a.cross(b).norm(), a.dot(b)) * degrees);
+  }
+  return sharpest;
+}
+
+}  // namespace
+
+CrownBorder find_crown_border(const TriangleMesh& crown) {
+  CrownBorder border;
+  border.is_vertex.assign(crown.vertices.size(), false);
+  border.is_edge.assign(crown.triangles.size(), {false, false, false});
+  const EdgeTable table = edge_table(crown);
+  for (std::size_t e = 0; e < table.size(); ++e) {
+    if (table.triangle_count(e) != 1) continue;
+    const int h = table.half_edges[static_cast<std::size_t>(table.first[e])];
+    const int a = half_edge_from(crown, h), b = half_edge_to(crown, h);
+    border.half_edges.emplace_back(a, b);
+    border.is_edge[static_cast<std::size_t>(h / 3)][static_cast<std::size_t>(h % 3)] = true;
+    border.is_vertex[static_cast<std::size_t>(a)] = border.is_vertex[static_cast<std::size_t>(b)] = true;
+    border.mean_edge +=
+        (crown.vertices[static_cast<std::size_t>(a)] - crown.vertices[static_cast<std::size_t>(b)]).norm();
+  }
+  if (border.half_edges.empty())
+    throw InputError("The crown is closed: without an open base there is no place for a root.");
+  border.mean_edge /= static_cast<double>(border.half_edges.size());
+  border.sharpest_notch = sharpest_notch(crown, border);
+  return border;
+}
+
+CrownDistances crown_distances(const TriangleMesh& guiding_surface, const TriangleMesh& crown,
+                               const CrownBorder& border) {
+  const ClosestPointIndex index(crown);
+  const std::size_t n = guiding_surface.vertices.size();
+  CrownDistances result;
+  result.distance.resize(n);
+  std::vector<char> on_border(n);
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t v) {
+    const ClosestPoint closest = index.closest(guiding_surface.vertices[v]);
+    result.distance[v] = closest.distance;
+    on_border[v] = lies_on_border(crown, border, closest) ? 1 : 0;
+  });
+  result.closest_on_border.assign(on_border.begin(), on_border.end());
+  return result;
+}
+
+}  // namespace rhizodont

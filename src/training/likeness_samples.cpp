@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "training/likeness_samples.hpp"
+
+#include "completion/tooth_classifier.hpp"
+#include "families/crown_crop.hpp"
+#include "families/unlike_crowns.hpp"
+#include "rhizodont/error.hpp"
+#include "teeth/frame.hpp"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+
+namespace rhizodont {
+namespace {
+
+constexpr double paper_share = 0.02, gap_probability = 0.5;
+constexpr double skirt_probability = 0.2, skirt_mm = 0.9;
+
+void maybe_add_skirt(TriangleMesh& crown, RandomStream& random) {
+  if (random.chance(skirt_probability)) add_skirt_remains(crown, skirt_mm, random);
+}
+
+/// Borders are ragged: axis and middle found from them differ from scan to scan.
+CrownPanorama seen_from_beside(const TriangleMesh& crown, RandomStream& random) {
+  constexpr double lean = 0.06, aside_mm = 0.25;
+  const auto draw = [&] {
+    const double x = random.normal(), y = random.normal(), z = random.normal();
+    return Eigen::Vector3d(x, y, z);
+  };
+  Eigen::Vector3d axis = growth_axis(crown);
+  axis = (axis + random.normal(0.0, lean) * axis.cross(draw()).normalized()).normalized();
+  return crown_panorama(crown, axis, panorama_centre(crown, axis) + aside_mm * draw());
+}
+
+}  // namespace
+
+TriangleMesh draw_scanned_crown(const SyntheticTooth& tooth, RandomStream& random) {
+  TriangleMesh crown = draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh;
+  maybe_add_skirt(crown, random);
+  return crown;
+}
+
+TriangleMesh draw_low_crown(const SyntheticTooth& tooth, RandomStream& random) {
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    GumLine line = draw_gum_line(tooth, paper_share, gap_probability, random);
+    line.offset_mm += random.uniform(0.05, 0.55) * tooth.crown_height;
+    auto crown = crop_crown(tooth, line);
+    if (!crown) continue;
+    maybe_add_skirt(*crown, random);
+    return std::move(*crown);
+  }
+  throw NoResultError("No gum line left a crown in one piece with one border.");
+}
+
+std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families, int type, std::uint64_t seed) {
+  RandomStream random(seed, 700 + static_cast<std::uint64_t>(type));
+  const SyntheticTooth tooth = generate_tooth(families, type, seed);
+  std::vector<LikenessSample> samples;
+  const auto add = [&](std::size_t label, const auto& make) {
+    try {
+      samples.push_back({seen_from_beside(make(), random), label});
+    } catch (const Error&) {  // a gum line or a cut that leaves nothing
+    }
+  };
+  const std::size_t label = 2 * static_cast<std::size_t>(type);
+  add(label, [&] { return draw_scanned_crown(tooth, random); });
+  add(label, [&] { return draw_scanned_crown(tooth, random); });
+  add(label, [&] { return draw_low_crown(tooth, random); });
+  for (int i = 0; i < 2; ++i) {
+    const auto kind = static_cast<UnlikeKind>(random.index(unlike_kind_count));
+    add(tooth_count, [&] {
+      return unlike_crown(draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh, kind, random);
+    });
+  }
+  return samples;
+}
+
+}  // namespace rhizodont

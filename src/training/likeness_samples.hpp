@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "base/random_stream.hpp"
+#include "completion/crown_panorama.hpp"
+#include "families/tooth_family.hpp"
+#include "rhizodont/mesh.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace rhizodont {
+
+/// A crown as scans give it: mostly cut near the junction, some with notches at the contacts or remains of gum.
+TriangleMesh draw_scanned_crown(const SyntheticTooth& tooth, RandomStream& random);
+
+/// A crown half erupted, or deep in gum: up to more than half of its height is missing. Throws NoResultError where ten
+/// gum lines left no disc.
+TriangleMesh draw_low_crown(const SyntheticTooth& tooth, RandomStream& random);
+
+/// What to learn from which tooth a crown is.
+struct LikenessSample {
+  CrownPanorama panorama;
+  std::size_t label = 0;  ///< 2 * type (left side), or tooth_count: no crown or little of one
+};
+
+/// Of tooth number `seed` of a type: two crowns as scans give them, a low one, and two things that are none
+/// (unlike_crown), each seen from a little beside where it should be. Fewer where a draw came to nothing. Depends on
+/// type and seed alone. Throws as generate_tooth.
+std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families, int type, std::uint64_t seed);
+
+}  // namespace rhizodont
