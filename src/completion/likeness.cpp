@@ -65,7 +65,7 @@ Likeness likeness(const TriangleMesh& open_crown, const ToothClassifier& classif
 LikenessBounds likeness_bounds(const std::vector<Likeness>& crowns, const std::vector<std::size_t>& teeth,
                                const std::vector<Likeness>& strangers) {
   constexpr std::size_t fewest = 500, fewest_strangers = 100;
-  constexpr double passing = 0.995, strangers_missed = 0.02, sides_missed = 1.0 / 6, strangers_not_refused = 0.5;
+  constexpr double passing = 0.995, strangers_missed = 0.02, sides_missed = 0.18, strangers_not_refused = 0.5;
   if (crowns.size() != teeth.size() || crowns.size() < fewest || strangers.size() < fewest_strangers)
     throw UsageError("Bounds need at least 500 crowns, each with its tooth, and 100 strangers.");
   std::vector<double> lead, wrong_side, unlike, strange;

@@ -134,7 +134,13 @@ KeptCrown open_part(const TriangleMesh& crown, bool closed, const Tools& tools, 
                     CompletionRecord& record) {
   require_tooth_size(crown, options.millimetres_per_unit, closed);
   KeptCrown kept = open_crown(crown, closed, tools.atlas, options, record);
-  if (closed) require_tooth_size(kept.mesh, options.millimetres_per_unit);
+  if (!closed) return kept;
+  try {
+    require_tooth_size(kept.mesh, options.millimetres_per_unit);
+  } catch (const InputError&) {
+    require_no_root(crown);  // a better reason
+    throw;
+  }
   return kept;
 }
 

@@ -17,6 +17,8 @@
 namespace rhizodont {
 namespace {
 
+constexpr double least_seen = 0.2;  // of a likely tooth's mean crown: less is no crown to predict a root from
+
 std::string percent(double share) {
   if (share > 0 && share < 0.01) return "under 1 %";
   return fmt::format("{:.0f} %", 100 * share);
@@ -63,7 +65,10 @@ CrownLikeness judge_crown(const TriangleMesh& crown, std::optional<int> fdi, con
   result.seen = agreement[0].seen;
   result.explained = agreement[0].explained;
   result.unlike_probability = 1 / (1 + std::exp(-judged.log_unlike));
-  if (judged.log_unlike > model.bounds.refused) throw InputError(refusal(result, fdi.has_value()));
+  // What the network was never shown, such as a few triangles, it may take for anything.
+  const bool covers_none =
+      std::all_of(agreement.begin(), agreement.end(), [](const MeanCrownAgreement& a) { return a.seen < least_seen; });
+  if (covers_none || judged.log_unlike > model.bounds.refused) throw InputError(refusal(result, fdi.has_value()));
   if (judged.log_unlike > model.bounds.unlike)
     result.verdict = LikenessVerdict::unlike;
   else if (judged.lead_over(teeth[0]) > model.bounds.other_tooth)

@@ -176,7 +176,7 @@ TEST(Repair, ASeamIsMergedAndListed) {
   const RepairedMesh repaired = repair(mesh);
   EXPECT_EQ(repaired.mesh.triangles, once.triangles);
   EXPECT_EQ(repaired.mesh.vertices, once.vertices);
-  const RepairStep s = step(repaired, "seam, at most 0.002 mm");
+  const RepairStep s = step(repaired, "seam, the farthest 0.002 mm apart");
   EXPECT_EQ(s.vertices.size(), mesh.vertices.size() - first_new);
   ASSERT_EQ(s.merged_into.size(), s.vertices.size());
   for (std::size_t k = 0; k < s.vertices.size(); ++k) EXPECT_EQ(other_side.at(s.merged_into[k]), s.vertices[k]);
