@@ -54,7 +54,7 @@ TEST_F(PairOfFiles, WrongUsageIs2) {
   expect_error("frobnicate", 2, "");
   expect_error("check crown.stl", 2, "TOOTH");
   expect_error("check crown.stl tooth.ply --frobnicate", 2, "--frobnicate");
-  expect_error("check crown.stl tooth.ply --least-kept 3", 2, "between 0 and 1");
+  expect_error("check crown.stl tooth.ply --least-kept 3", 2, "least_kept_share of the check is 3, out of its range");
   expect_error("render tooth.ply -o a.png --views behind", 2, "'behind'");
   expect_error("render tooth.ply -o a.png --color-by colour", 2, "'colour'");
   EXPECT_EQ(folder.file_count(), 3U);

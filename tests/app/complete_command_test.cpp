@@ -70,7 +70,7 @@ TEST_F(Complete, OtherFormatsKeepTheCrownToo) {
 }
 
 TEST_F(Complete, UnusableFilesAreRefused) {
-  expect_refused("missing.ply", "missing.ply");
+  expect_refused("missing.ply", "cannot be opened");
   write_bytes("empty.stl", "");
   expect_refused("empty.stl", "empty");
   write_bytes("none.ply",
@@ -79,9 +79,9 @@ TEST_F(Complete, UnusableFilesAreRefused) {
   expect_refused("none.ply", "no triangle");
   const std::string whole = test::read_all(sample("crown_36.stl"));
   write_bytes("cut.stl", whole.substr(0, whole.size() / 2));
-  expect_refused("cut.stl", "cut.stl");
+  expect_refused("cut.stl", "damaged or cut off");
   write_bytes("nan.obj", "v 0 0 nan\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-  expect_refused("nan.obj", "nan.obj");
+  expect_refused("nan.obj", "not a finite number");
 }
 
 TEST_F(Complete, MeshesThatAreNoCrownAreRefused) {
