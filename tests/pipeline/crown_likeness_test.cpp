@@ -89,6 +89,14 @@ TEST(CrownLikeness, WhatIsNoWholeCrownIsSaidToBeNone) {
   EXPECT_GE(caught, 0.95 * tried);
 }
 
+TEST(CrownLikeness, AFewTrianglesAreNoMolar) {
+  TriangleMesh pyramid;
+  pyramid.vertices = {{-4, -3, 0}, {4, -3, 0}, {0, 4, 0}, {0, 0, 6}};
+  pyramid.triangles = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const auto likeness = judged(pyramid, 36);
+  EXPECT_TRUE(!likeness || likeness->verdict != LikenessVerdict::fits);
+}
+
 TEST(CrownLikeness, AGuessSaysHowSureItIs) {
   const auto likeness = judged(sample("crown_36.stl"), std::nullopt);
   ASSERT_TRUE(likeness);
