@@ -73,7 +73,7 @@ CrownLikeness judge_crown(const TriangleMesh& crown, std::optional<int> fdi, con
     result.verdict = LikenessVerdict::unlike;
   else if (judged.lead_over(teeth[0]) > model.bounds.other_tooth)
     result.verdict = LikenessVerdict::other_tooth;
-  else if (result.seen < least_seen)
+  else if (result.seen < least_seen && result.explained < 0.5)  // low crowns lie on what little they show
     result.verdict = LikenessVerdict::unlike;
   return result;
 }
