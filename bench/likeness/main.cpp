@@ -216,8 +216,7 @@ void judge_files(const std::vector<std::filesystem::path>& files) {
       genuine.add(crown, *options.fdi, content.atlas, *content.likeness);
       guesses.add(crown, *options.fdi, content.atlas, *content.likeness);
       const Likeness judged = likeness(crown, content.likeness->classifier);
-      const auto said =
-          static_cast<std::size_t>(2 * tooth_type_of_fdi(*options.fdi) + (is_right_side(*options.fdi) ? 1 : 0));
+      const std::size_t said = tooth_of_fdi(*options.fdi);
       const LikenessBounds& bounds = content.likeness->bounds;
       if (judged.log_unlike > bounds.unlike || judged.lead_over(said) > bounds.other_tooth)
         fmt::print("warned of: {}: ln unlike {:.1f} (bounds {:.1f}, {:.1f}), ln another {:.1f} (bound {:.1f})\n",

@@ -1,10 +1,8 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-//
-// Split conformal prediction: H. Papadopoulos, K. Proedrou, V. Vovk, A. Gammerman, "Inductive confidence machines for
-// regression", 2002.
 #include "completion/likeness.hpp"
 
+#include "base/conformal_quantile.hpp"
 #include "completion/crown_panorama.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/frame.hpp"
@@ -14,14 +12,6 @@
 
 namespace rhizodont {
 namespace {
-
-/// A share of the values is at most this: of n values, the ceil(share (n + 1))-th.
-double bound_for(std::vector<double> values, double share) {
-  const auto n = static_cast<double>(values.size());
-  const auto place = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(share * (n + 1)), 1.0, n)) - 1;
-  std::nth_element(values.begin(), values.begin() + place, values.end());
-  return values[static_cast<std::size_t>(place)];
-}
 
 constexpr const char* bounds_name = "bounds";
 
@@ -76,9 +66,9 @@ LikenessBounds likeness_bounds(const std::vector<Likeness>& crowns, const std::v
   }
   for (const Likeness& stranger : strangers) strange.push_back(stranger.log_unlike);
   LikenessBounds bounds;
-  bounds.other_tooth = std::max(bound_for(lead, passing), bound_for(wrong_side, sides_missed));
-  bounds.unlike = std::max(bound_for(unlike, passing), bound_for(strange, strangers_missed));
-  bounds.refused = std::max(bounds.unlike, bound_for(strange, strangers_not_refused));
+  bounds.other_tooth = std::max(conformal_quantile(lead, passing), conformal_quantile(wrong_side, sides_missed));
+  bounds.unlike = std::max(conformal_quantile(unlike, passing), conformal_quantile(strange, strangers_missed));
+  bounds.refused = std::max(bounds.unlike, conformal_quantile(strange, strangers_not_refused));
   return bounds;
 }
 

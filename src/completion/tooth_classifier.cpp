@@ -64,6 +64,10 @@ constexpr std::array<Eigen::Index, 5> strides{1, 2, 1, 2, 1};
 
 }  // namespace
 
+std::size_t tooth_of_fdi(int fdi) {
+  return 2 * static_cast<std::size_t>(tooth_type_of_fdi(fdi)) + (is_right_side(fdi) ? 1 : 0);
+}
+
 ToothClassifier::ToothClassifier(const TensorFile& file) {
   const auto layer = [&](const std::string& name, std::size_t dimensions) {
     const auto weight = file.tensors.find(name + ".weight"), bias = file.tensors.find(name + ".bias");

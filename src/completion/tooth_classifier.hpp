@@ -16,6 +16,8 @@ namespace rhizodont {
 
 /// Number of permanent teeth; tooth t is type t / 2 on the left (even) or right (odd) side.
 inline constexpr std::size_t tooth_count = 2 * static_cast<std::size_t>(tooth_type_count);
+/// Tooth of an FDI number. Throws UsageError for other numbers than those of permanent teeth.
+std::size_t tooth_of_fdi(int fdi);
 
 /// What a panorama looks like: natural logarithms of probabilities that sum to 1 with `unlike`'s.
 struct ToothProbabilities {

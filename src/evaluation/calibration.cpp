@@ -5,25 +5,12 @@
 // regression", 2002.
 #include "evaluation/calibration.hpp"
 
+#include "base/conformal_quantile.hpp"
 #include "rhizodont/error.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <vector>
 
 namespace rhizodont {
-namespace {
-
-/// The value that a share of `share` of values like these lies below: of n values, the ceil(share (n + 1))-th.
-double conformal_quantile(std::vector<double> values, double share) {
-  const auto n = static_cast<double>(values.size());
-  const auto place = static_cast<std::ptrdiff_t>(std::clamp(std::ceil(share * (n + 1)), 1.0, n)) - 1;
-  std::nth_element(values.begin(), values.begin() + place, values.end());
-  return values[static_cast<std::size_t>(place)];
-}
-
-}  // namespace
-
 Coverage coverage(const Evaluation& evaluation, std::size_t predictor) {
   Coverage result;
   for (const EvaluatedCase& evaluated : evaluation.cases) {

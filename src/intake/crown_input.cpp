@@ -17,9 +17,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <limits>
 
 namespace rhizodont {
 namespace {
@@ -70,12 +68,7 @@ double length(const TriangleMesh& mesh) {
   std::vector<Point> points;
   for (const Triangle& t : mesh.triangles)
     for (const int v : t) points.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
-  const Eigen::Vector3d axis = principal_axis(points);
-  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
-  for (const Point& p : points) {
-    low = std::min(low, p.dot(axis));
-    high = std::max(high, p.dot(axis));
-  }
+  const auto [low, high] = extent_along(points, principal_axis(points));
   return high - low;
 }
 

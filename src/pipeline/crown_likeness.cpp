@@ -24,10 +24,6 @@ std::string percent(double share) {
   return fmt::format("{:.0f} %", 100 * share);
 }
 
-std::size_t place_of(int fdi) {
-  return 2 * static_cast<std::size_t>(tooth_type_of_fdi(fdi)) + (is_right_side(fdi) ? 1 : 0);
-}
-
 std::string refusal(const CrownLikeness& likeness, bool given) {
   const ToothLikeness& said = likeness.said;
   const ToothLikeness& next = likeness.next[0];
@@ -48,7 +44,7 @@ CrownLikeness judge_crown(const TriangleMesh& crown, std::optional<int> fdi, con
   // The tooth that it is said to be first, then the most probable ones.
   std::vector<std::size_t> teeth(tooth_count);
   std::iota(teeth.begin(), teeth.end(), std::size_t{0});
-  const std::optional<std::size_t> given = fdi ? std::optional(place_of(*fdi)) : std::nullopt;
+  const std::optional<std::size_t> given = fdi ? std::optional(tooth_of_fdi(*fdi)) : std::nullopt;
   std::stable_sort(teeth.begin(), teeth.end(), [&](std::size_t a, std::size_t b) {
     if ((a == given) != (b == given)) return a == given;
     return judged.log_probability[a] > judged.log_probability[b];

@@ -33,10 +33,6 @@ const LikenessModel& shipped() {
 
 TriangleMesh sample(const std::string& name) { return load_mesh(root / "samples" / name).mesh; }
 
-std::size_t tooth_of(int fdi) {
-  return 2 * static_cast<std::size_t>(tooth_type_of_fdi(fdi)) + (is_right_side(fdi) ? 1 : 0);
-}
-
 TEST(Likeness, ProbabilitiesSumToOneAndLeadsStartAtNone) {
   const Likeness judged = likeness(sample("crown_34.ply"), shipped().classifier);
   double sum = 0, least = 1e9;
@@ -46,7 +42,7 @@ TEST(Likeness, ProbabilitiesSumToOneAndLeadsStartAtNone) {
   }
   EXPECT_NEAR(sum, 1, 1e-9);
   EXPECT_EQ(least, 0);
-  EXPECT_LE(judged.lead_over(tooth_of(34)), shipped().bounds.other_tooth);
+  EXPECT_LE(judged.lead_over(tooth_of_fdi(34)), shipped().bounds.other_tooth);
 }
 
 TEST(Likeness, DoesNotDependOnWhereTheCrownIs) {
@@ -131,7 +127,7 @@ TEST(Likeness, BoundsGoThroughAFile) {
 
 TEST(MeanCrownAgreement, TheToothThatItIsAgreesBest) {
   const TriangleMesh crown = sample("crown_36.stl");
-  const auto agreement = mean_crown_agreement(crown, atlas(), {tooth_of(36), tooth_of(11), tooth_of(36)});
+  const auto agreement = mean_crown_agreement(crown, atlas(), {tooth_of_fdi(36), tooth_of_fdi(11), tooth_of_fdi(36)});
   ASSERT_EQ(agreement.size(), 3U);
   EXPECT_LT(agreement[0].distance_mm, 1);
   EXPECT_GT(agreement[0].seen, 0.8);
@@ -142,7 +138,7 @@ TEST(MeanCrownAgreement, TheToothThatItIsAgreesBest) {
 
 TEST(MeanCrownAgreement, IsTheSameForAnyNumberOfThreadsAndAnyPlace) {
   TriangleMesh crown = sample("crown_34.ply");
-  const std::vector<std::size_t> teeth{tooth_of(34), tooth_of(45), tooth_of(21)};
+  const std::vector<std::size_t> teeth{tooth_of_fdi(34), tooth_of_fdi(45), tooth_of_fdi(21)};
   const auto many = mean_crown_agreement(crown, atlas(), teeth);
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
