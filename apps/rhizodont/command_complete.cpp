@@ -61,16 +61,16 @@ void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::strin
   fmt::print(
       out,
       "{}: tooth {}{}, {} of {} crown triangles kept bit for bit, root {:.1f} mm, new triangles Q {:.3f}, {:.2f} s\n",
-      output, r.fdi, r.fdi_guessed ? " (guessed)" : "", r.kept_triangles, r.crown_triangles, r.root_length_mm,
+      output, r.fdi, r.fdi_guessed ? " (guessed)" : "", r.crown.kept_triangles, r.crown.triangles, r.root.length_mm,
       r.promises.new_triangles.all.value_or(QualityFigures{}).q_avg, seconds);
-  if (const auto& interval = r.root_interval)
+  if (const auto& interval = r.root.interval)
     fmt::print(out, "  root length with 80 % probability {:.1f} to {:.1f} mm, apex within {:.1f} mm\n",
                interval->length_low_mm, interval->length_high_mm, interval->apex_radius_mm);
   if (const auto& likeness = r.likeness)
     fmt::print(out, "  like a {}: {:.0f} %, {:.2f} mm from its mean crown; next {} ({:.0f} %) and {} ({:.0f} %)\n",
                likeness->said.fdi, 100 * likeness->said.probability, likeness->said.distance_mm, likeness->next[0].fdi,
                100 * likeness->next[0].probability, likeness->next[1].fdi, 100 * likeness->next[1].probability);
-  const auto skirt = std::count_if(r.dropped_vertices.begin(), r.dropped_vertices.end(),
+  const auto skirt = std::count_if(r.crown.dropped_vertices.begin(), r.crown.dropped_vertices.end(),
                                    [](const DroppedCrownVertex& d) { return d.reason == "skirt"; });
   if (skirt > 0) fmt::print(out, "  {} vertices dropped as skirt\n", skirt);
   for (const RepairStep& step : r.repairs)
@@ -95,10 +95,10 @@ MeshFile confidence_file(const MeshFile& crown, const CompletionRecord& record) 
   MeshFile file;
   file.mesh = crown.mesh;
   VertexAttribute confidence{AttributeType::float32, {}};
-  for (const float c : record.tooth_confidence) confidence.values.push_back(static_cast<double>(c));
+  for (const float c : record.crown.tooth_confidence) confidence.values.push_back(static_cast<double>(c));
   file.vertex_attributes["confidence"] = std::move(confidence);
   VertexAttribute kept{AttributeType::uint8, std::vector<double>(crown.mesh.vertices.size(), 0)};
-  for (const int v : record.kept_vertices) kept.values[static_cast<std::size_t>(v)] = 1;
+  for (const int v : record.crown.kept_vertices) kept.values[static_cast<std::size_t>(v)] = 1;
   file.vertex_attributes["kept"] = std::move(kept);
   file.comments = {"confidence: that a vertex is tooth and not skirt, 0 to 1; -1 not judged", "kept: 1 in the tooth"};
   return file;

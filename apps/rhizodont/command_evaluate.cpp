@@ -38,7 +38,7 @@ NamedPredictor rhizodont_predictor(const EvaluateCommand& command) {
             CompleteOptions of_this = options;
             of_this.fdi = fdi;
             const CompletedTooth tooth = complete_tooth(crown, *models, of_this);
-            return ToothPrediction{tooth.mesh, tooth.record.root_interval, tooth.record.apex_expected_distance_mm,
+            return ToothPrediction{tooth.mesh, tooth.record.root.interval, tooth.record.root.apex_expected_distance_mm,
                                    tooth.uncertainty};
           }};
 }

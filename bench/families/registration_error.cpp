@@ -8,6 +8,7 @@
 #include "families/crown_crop.hpp"
 #include "families/mean_teeth.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>
@@ -40,7 +41,8 @@ Outcome register_generated(const ToothFamilies& families, const Atlas& atlas, in
   const CanonicalFrame truth = frame_of_crop(crop.mesh, -tooth.crown_turn);
   CrownFrame found;
   const auto lay = [&] {
-    found = canonical_frame(crop.mesh, fdi_of_type(type, false), atlas.types[static_cast<std::size_t>(type)]);
+    found = canonical_frame(prepare_crown(crop.mesh), fdi_of_type(type, false),
+                            atlas.types[static_cast<std::size_t>(type)]);
   };
   Outcome outcome;
   outcome.seconds = median_seconds(lay, 1);

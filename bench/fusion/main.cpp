@@ -49,7 +49,7 @@ Row complete_often(const BenchTooth& input, const CompletionModels& models, int 
     row.whole_seconds = i == 0 ? whole : std::min(row.whole_seconds, whole);
     if (i > 0) {
       take_shortest(row.tooth.record.stages, tooth.record.stages);
-      take_shortest(row.tooth.record.joining_steps, tooth.record.joining_steps);
+      take_shortest(row.tooth.record.joining.steps, tooth.record.joining.steps);
     }
     row.tooth = std::move(tooth);
   }
@@ -105,8 +105,8 @@ void print_deviation(const std::vector<Row>& rows) {
     const CompletionRecord& r = row.tooth.record;
     const auto bins = r.promises.crown.deviation.value_or(CrownDeviation{}).bins;
     fmt::print("| Rhizodont | {} | {} | {} | {} | {} | {} | {:.2f} % | {} |\n", row.fdi, r.promises.crown.vertices,
-               bins[0], bins[1], bins[2], bins[3], 100.0 * r.crown_triangles_direct / r.kept_triangles,
-               r.crown_triangles_restored);
+               bins[0], bins[1], bins[2], bins[3], 100.0 * r.joining.crown_triangles_direct / r.crown.kept_triangles,
+               r.joining.crown_triangles_restored);
   }
   constexpr std::array<std::array<int, 5>, 7> paper{{{11, 1828, 1435, 393, 0},
                                                      {12, 1455, 1116, 328, 11},
@@ -119,15 +119,15 @@ void print_deviation(const std::vector<Row>& rows) {
 }
 
 void print_seconds(const std::string& title, const std::vector<Row>& rows,
-                   std::vector<StageRecord> CompletionRecord::*stages) {
+                   const std::vector<StageRecord>& (*steps_of)(const CompletionRecord&)) {
   fmt::print("\n## {}\n\n| tooth |", title);
-  const std::size_t columns = (rows.front().tooth.record.*stages).size();
-  for (const StageRecord& stage : rows.front().tooth.record.*stages) fmt::print(" {} |", stage.name);
+  const std::size_t columns = steps_of(rows.front().tooth.record).size();
+  for (const StageRecord& stage : steps_of(rows.front().tooth.record)) fmt::print(" {} |", stage.name);
   fmt::print("\n|---|");
   for (std::size_t i = 0; i < columns; ++i) fmt::print("---|");
   for (const Row& row : rows) {
     fmt::print("\n| {} |", row.fdi);
-    for (const StageRecord& stage : row.tooth.record.*stages) fmt::print(" {:.3f} |", stage.seconds);
+    for (const StageRecord& stage : steps_of(row.tooth.record)) fmt::print(" {:.3f} |", stage.seconds);
   }
   fmt::print("\n");
 }
@@ -155,8 +155,11 @@ int main(int argc, char** argv) {
     print_quality(rows);
     print_deviation(rows);
     const std::string best = fmt::format(", best of {}", repeats);
-    print_seconds("Seconds by stage" + best, rows, &CompletionRecord::stages);
-    print_seconds("Seconds of the steps of joining" + best, rows, &CompletionRecord::joining_steps);
+    print_seconds(
+        "Seconds by stage" + best, rows, [](const CompletionRecord& record) -> const auto& { return record.stages; });
+    print_seconds(
+        "Seconds of the steps of joining" + best, rows,
+        [](const CompletionRecord& record) -> const auto& { return record.joining.steps; });
     print_sums(rows);
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -12,6 +12,8 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/frame.hpp"
+#include "teeth/prepared_crown.hpp"
 #include "training/likeness_samples.hpp"
 
 #include <fmt/core.h>
@@ -65,10 +67,11 @@ LikenessBounds bounds_of(const ToothFamilies& families, const ToothClassifier& c
       try {
         const SyntheticTooth tooth = generate_tooth(families, type, seed);
         const TriangleMesh crown = i % 3 == 0 ? draw_low_crown(tooth, random) : draw_scanned_crown(tooth, random);
-        crowns.push_back(likeness(crown, classifier));
+        crowns.push_back(likeness(crown, growth_axis(crown), classifier));
         teeth.push_back(2 * static_cast<std::size_t>(type));
         const auto kind = static_cast<UnlikeKind>((i + type) % unlike_kind_count);
-        strangers.push_back(likeness(unlike_crown(draw_scanned_crown(tooth, random), kind, random), classifier));
+        const TriangleMesh stranger = unlike_crown(draw_scanned_crown(tooth, random), kind, random);
+        strangers.push_back(likeness(stranger, growth_axis(stranger), classifier));
       } catch (const Error&) {  // a cut that leaves nothing
       }
     }
@@ -119,7 +122,7 @@ struct Tally {
   void add(const TriangleMesh& crown, int fdi, const Atlas& atlas, const LikenessModel& model) {
     ++crowns;
     try {
-      const LikenessVerdict verdict = judge_crown(crown, fdi, atlas, model).verdict;
+      const LikenessVerdict verdict = judge_crown(prepare_crown(crown), fdi, atlas, model).verdict;
       other += verdict == LikenessVerdict::other_tooth ? 1 : 0;
       unlike += verdict == LikenessVerdict::unlike ? 1 : 0;
     } catch (const InputError&) {
@@ -141,7 +144,7 @@ struct Guesses {
   void add(const TriangleMesh& crown, int fdi, const Atlas& atlas, const LikenessModel& model) {
     ++crowns;
     try {
-      const CrownLikeness judged = judge_crown(crown, std::nullopt, atlas, model);
+      const CrownLikeness judged = judge_crown(prepare_crown(crown), std::nullopt, atlas, model);
       right += judged.said.fdi == fdi ? 1 : 0;
       type += tooth_type_of_fdi(judged.said.fdi) == tooth_type_of_fdi(fdi) ? 1 : 0;
       second +=
@@ -200,7 +203,7 @@ void table(const std::filesystem::path& data, int per_type) {
 /// Crowns in files whose names end in their number (crown_36.ply), as `complete --repair --skirt auto` takes them.
 void judge_files(const std::vector<std::filesystem::path>& files) {
   const CompletionModels loaded = CompletionModels::load(models);
-  const CompletionModels::Content& content = loaded.content();
+  const CompletionModels::Content& content = *content_of(loaded);
   Tally genuine;
   Guesses guesses;
   int untaken = 0;
@@ -210,12 +213,11 @@ void judge_files(const std::vector<std::filesystem::path>& files) {
     options.skirt = 0.5;
     const std::string name = file.stem().string();
     options.fdi = std::atoi(name.substr(name.size() < 2 ? 0 : name.size() - 2).c_str());
-    CompletionRecord record;
     try {
-      const TriangleMesh crown = take_crown(load_mesh(file).mesh, content.atlas, content.skirt, options, record).mesh;
+      const TriangleMesh crown = take_crown(load_mesh(file).mesh, content.atlas, content.skirt, options).kept.mesh;
       genuine.add(crown, *options.fdi, content.atlas, *content.likeness);
       guesses.add(crown, *options.fdi, content.atlas, *content.likeness);
-      const Likeness judged = likeness(crown, content.likeness->classifier);
+      const Likeness judged = likeness(crown, growth_axis(crown), content.likeness->classifier);
       const std::size_t said = tooth_of_fdi(*options.fdi);
       const LikenessBounds& bounds = content.likeness->bounds;
       if (judged.log_unlike > bounds.unlike || judged.lead_over(said) > bounds.other_tooth)

@@ -28,6 +28,7 @@
 #include "poisson/peer_table.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "teeth/prepared_crown.hpp"
 
 namespace rhizodont {
 namespace {
@@ -43,7 +44,8 @@ void stages(const std::filesystem::path& data) {
   fmt::print("|---|---|---|---|---|---|---|---|---|\n");
   for (const BenchPrediction& tooth : predict_validation_teeth(data)) {
     GuidingCloud cloud;
-    const double t_cloud = best_seconds([&] { cloud = assemble_guiding_cloud(tooth.crown, tooth.predicted); });
+    const double t_cloud =
+        best_seconds([&] { cloud = assemble_guiding_cloud(prepare_crown(tooth.crown), tooth.predicted); });
     IndicatorStatistics statistics;
     const double t_indicator =
         best_seconds([&] { statistics = solve_indicator(cloud.samples, cloud.confidence).statistics(); });
@@ -57,7 +59,7 @@ void stages(const std::filesystem::path& data) {
     });
     const double t_fit = best_seconds([&] {
       TriangleMesh fitted = surface;
-      fit_to_crown(fitted, tooth.crown);
+      fit_to_crown(fitted, prepare_crown(tooth.crown));
     });
     fmt::print("| {} | {} | {} | {:.3f} | {:.3f} | {} | {:.3f} | {:.3f} | {:.3f} |\n", tooth.fdi,
                cloud.samples.points.size(), statistics.functions, t_cloud, t_indicator, statistics.cycles, t_surface,
@@ -70,7 +72,8 @@ void stages(const std::filesystem::path& data) {
 void distance(const std::filesystem::path& data) {
   const auto teeth = predict_validation_teeth(data);
   std::vector<GuidingCloud> clouds;
-  for (const BenchPrediction& tooth : teeth) clouds.push_back(assemble_guiding_cloud(tooth.crown, tooth.predicted));
+  for (const BenchPrediction& tooth : teeth)
+    clouds.push_back(assemble_guiding_cloud(prepare_crown(tooth.crown), tooth.predicted));
   const std::array<std::array<double, 3>, 4> paper{
       {{1.0, 3.17e-2, 0.29}, {0.75, 2.29e-2, 0.26}, {0.5, 1.41e-2, 0.16}, {0.25, 7.1e-3, 0.12}}};
   fmt::print("| e | d_avg | d_max | paper's d_avg | paper's d_max | vertices | s | self-intersecting pairs |\n");
@@ -80,7 +83,8 @@ void distance(const std::filesystem::path& data) {
     std::size_t crossing = 0, count = 0;
     for (std::size_t i = 0; i < teeth.size(); ++i) {
       TriangleMesh surface;
-      seconds += best_seconds([&] { surface = fitted_guiding_surface(clouds[i], teeth[i].crown, e).mesh; }, 1);
+      seconds +=
+          best_seconds([&] { surface = fitted_guiding_surface(clouds[i], prepare_crown(teeth[i].crown), e).mesh; }, 1);
       const Distances d = distances(teeth[i].crown.vertices, ClosestPointIndex(surface));
       mean += d.mean * static_cast<double>(teeth[i].crown.vertices.size());
       count += teeth[i].crown.vertices.size();
@@ -166,7 +170,7 @@ void ipsr(const std::filesystem::path& data) {
   fmt::print("|---|---|---|---|---|---|---|---|---|\n");
   for (const BenchPrediction& tooth : predict_validation_teeth(data)) {
     if (tooth.fdi > 37) continue;
-    const GuidingCloud cloud = assemble_guiding_cloud(tooth.crown, tooth.predicted);
+    const GuidingCloud cloud = assemble_guiding_cloud(prepare_crown(tooth.crown), tooth.predicted);
     IterativePoisson result;
     const double seconds = best_seconds([&] { result = iterative_poisson(cloud.samples.points); }, 1);
     const QualityFigures q = quality(result.surface).value_or(QualityFigures{});

@@ -10,16 +10,17 @@
 #include "completion/complete_points.hpp"
 #include "pipeline/models.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/prepared_crown.hpp"
 
 namespace rhizodont {
 
 std::vector<BenchPrediction> predict_validation_teeth(const std::filesystem::path& data_folder) {
   const CompletionModels models = CompletionModels::load(default_models_folder());
-  const auto& content = models.content();
+  const auto& content = *content_of(models);
   std::vector<BenchPrediction> teeth;
   for (BenchTooth& tooth : load_validation_teeth(data_folder)) {
     const auto type = static_cast<std::size_t>(tooth_type_of_fdi(tooth.fdi));
-    const CrownFrame frame = canonical_frame(tooth.crown, tooth.fdi, content.atlas.types[type]);
+    const CrownFrame frame = canonical_frame(prepare_crown(tooth.crown), tooth.fdi, content.atlas.types[type]);
     OrientedPoints predicted = complete_points(tooth.crown, tooth.fdi, frame, content.network).cloud;
     teeth.push_back({tooth.fdi, std::move(tooth.crown), std::move(tooth.tooth), std::move(predicted)});
   }

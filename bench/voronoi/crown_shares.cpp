@@ -19,6 +19,7 @@
 #include "tables.hpp"
 #include "teeth/crown_border.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/prepared_crown.hpp"
 #include "voronoi/delaunay_mesh.hpp"
 #include "voronoi/restricted_voronoi.hpp"
 #include "voronoi/voronoi_edge.hpp"
@@ -36,7 +37,7 @@ namespace {
 
 /// A crown with what the pipeline joins it to.
 struct CrownCase {
-  TriangleMesh crown;
+  PreparedCrown crown;
   TriangleMesh surface;
   std::vector<Point> root;
 };
@@ -44,23 +45,19 @@ struct CrownCase {
 CrownCase prepare(const TriangleMesh& input, int fdi, const CompletionModels::Content& models) {
   CompleteOptions options;
   options.fdi = fdi;
-  CompletionRecord record;
-  CrownCase result;
-  result.crown = take_crown(input, models.atlas, std::nullopt, options, record).mesh;
+  CrownCase result{prepare_crown(take_crown(input, models.atlas, std::nullopt, options).kept.mesh), {}, {}};
   const CrownFrame frame =
       canonical_frame(result.crown, fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))]);
-  const PredictedTooth predicted = complete_points(result.crown, fdi, frame, models.network);
+  const PredictedTooth predicted = complete_points(result.crown.mesh, fdi, frame, models.network);
   result.surface =
       fitted_guiding_surface(assemble_guiding_cloud(result.crown, predicted.cloud), result.crown, options.e).mesh;
   const Eigen::Vector3d axis = frame.frame.direction_to_world(Eigen::Vector3d::UnitZ());
-  const CrownBorder border = find_crown_border(result.crown);
-  const auto is_root =
-      separate_crown_and_root(result.surface, crown_distances(result.surface, result.crown, border), axis);
+  const auto is_root = separate_crown_and_root(result.surface, crown_distances(result.surface, result.crown), axis);
   const SurfaceWalk walk(result.surface);
   const FuseOptions fuse;
-  const EdgeLengths lengths(result.crown, border, mean_edge_length(result.surface), fuse.edge_growth,
+  const EdgeLengths lengths(result.crown.mesh, result.crown.border, mean_edge_length(result.surface), fuse.edge_growth,
                             fuse.edge_shrinkage);
-  result.root = root_sites(walk, is_root, result.crown, border, lengths);
+  result.root = root_sites(walk, is_root, result.crown.mesh, result.crown.border, lengths);
   return result;
 }
 
@@ -141,12 +138,12 @@ void examine_pieces(const CrownCase& c, const DelaunayMesh& delaunay, const Join
 }
 
 Share measure(const CrownCase& c) {
-  const Joining joining = join_crown_and_root(c.crown, c.root, c.surface);
-  const DelaunayMesh delaunay = make_delaunay_mesh(c.crown);
-  const std::vector<bool> strong =
-      triangles_given_by_dual(c.crown, delaunay, restricted_voronoi(delaunay.mesh.vertices, delaunay.mesh).triangles);
+  const Joining joining = join_crown_and_root(c.crown.mesh, c.root, c.surface);
+  const DelaunayMesh delaunay = make_delaunay_mesh(c.crown.mesh);
+  const std::vector<bool> strong = triangles_given_by_dual(
+      c.crown.mesh, delaunay, restricted_voronoi(delaunay.mesh.vertices, delaunay.mesh).triangles);
   Share share;
-  share.triangles = static_cast<int>(c.crown.triangles.size());
+  share.triangles = static_cast<int>(c.crown.mesh.triangles.size());
   share.direct = joining.crown_triangles_direct;
   share.steiner = joining.steiner_points;
   share.edges_left = delaunay.edges_left;
@@ -206,7 +203,7 @@ void print_crown_shares(const std::filesystem::path& data_folder) {
       const auto path = data_folder / group / fmt::format("crown_{}.ply", fdi);
       if (!std::filesystem::exists(path)) continue;
       try {
-        const Share s = measure(prepare(load_mesh(path).mesh, fdi, models.content()));
+        const Share s = measure(prepare(load_mesh(path).mesh, fdi, *content_of(models)));
         print_row(fmt::format("{} {}", group, fdi), s);
         add(s, total);
       } catch (const Error& error) {

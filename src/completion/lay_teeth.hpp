@@ -13,7 +13,6 @@ namespace rhizodont {
 
 /// Lays the mean crowns of some of the 32 teeth (2 * type + (right side ? 1 : 0)) on an open crown: one fit for each,
 /// in their order. Deterministic. Throws as canonical_frame.
-std::vector<RigidFit> lay_teeth(const TriangleMesh& open_crown, const Atlas& atlas,
-                                const std::vector<std::size_t>& teeth);
+std::vector<RigidFit> lay_teeth(const PreparedCrown& crown, const Atlas& atlas, const std::vector<std::size_t>& teeth);
 
 }  // namespace rhizodont

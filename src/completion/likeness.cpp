@@ -5,7 +5,6 @@
 #include "base/conformal_quantile.hpp"
 #include "completion/crown_panorama.hpp"
 #include "rhizodont/error.hpp"
-#include "teeth/frame.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -40,9 +39,10 @@ double Likeness::lead_over(std::size_t tooth) const {
   return *std::max_element(log_probability.begin(), log_probability.end()) - log_probability.at(tooth);
 }
 
-Likeness likeness(const TriangleMesh& open_crown, const ToothClassifier& classifier) {
-  const Eigen::Vector3d axis = growth_axis(open_crown);
-  const ToothProbabilities all = classifier(crown_panorama(open_crown, axis, panorama_centre(open_crown, axis)));
+Likeness likeness(const TriangleMesh& open_crown, const Eigen::Vector3d& growth_axis,
+                  const ToothClassifier& classifier) {
+  const ToothProbabilities all =
+      classifier(crown_panorama(open_crown, growth_axis, panorama_centre(open_crown, growth_axis)));
   double any_tooth = 0;
   for (const double p : all.log_tooth) any_tooth += std::exp(p);
   any_tooth = std::log(std::max(any_tooth, 1e-300));

@@ -43,9 +43,10 @@ struct Likeness {
   double lead_over(std::size_t tooth) const;
 };
 
-/// Looks at an open crown from amid its base, along its growth axis. Deterministic, whatever the crown's place and
-/// orientation. Throws InputError for crowns without area, border or axis.
-Likeness likeness(const TriangleMesh& open_crown, const ToothClassifier& classifier);
+/// Looks at an open crown from amid its base, along its growth axis (unit). Deterministic, whatever the crown's place
+/// and orientation. Throws InputError for crowns without area or border.
+Likeness likeness(const TriangleMesh& open_crown, const Eigen::Vector3d& growth_axis,
+                  const ToothClassifier& classifier);
 
 /// Bounds from generated crowns that had no part in the training. Real crowns differ from generated ones in ways that
 /// nobody foresaw, so each bound lies as far from the crowns as what it is there for allows: 49 of 50 strangers are

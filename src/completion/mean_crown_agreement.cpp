@@ -38,11 +38,11 @@ OneWay one_way(const OrientedCloud& from, const OrientedCloud& to) {
 
 }  // namespace
 
-std::vector<MeanCrownAgreement> mean_crown_agreement(const TriangleMesh& open_crown, const Atlas& atlas,
+std::vector<MeanCrownAgreement> mean_crown_agreement(const PreparedCrown& crown, const Atlas& atlas,
                                                      const std::vector<std::size_t>& teeth) {
   constexpr std::size_t points = 384;
-  const std::vector<RigidFit> fits = lay_teeth(open_crown, atlas, teeth);
-  const SurfaceSamples surface = sample_surface(open_crown, points, 1);
+  const std::vector<RigidFit> fits = lay_teeth(crown, atlas, teeth);
+  const SurfaceSamples surface = sample_surface(crown.mesh, points, 1);
   std::vector<MeanCrownAgreement> result(fits.size());
   tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t i) {
     const CanonicalFrame& frame = fits[i].frame;

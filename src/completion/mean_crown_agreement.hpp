@@ -3,7 +3,7 @@
 #pragma once
 
 #include "completion/mean_crowns.hpp"
-#include "rhizodont/mesh.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -19,7 +19,7 @@ struct MeanCrownAgreement {
 
 /// Agreement with some of the 32 teeth (2 * type + (right side ? 1 : 0)), in their order. Near means within 1 mm of the
 /// mean crown's size, facing the same way. Deterministic. Throws as canonical_frame.
-std::vector<MeanCrownAgreement> mean_crown_agreement(const TriangleMesh& open_crown, const Atlas& atlas,
+std::vector<MeanCrownAgreement> mean_crown_agreement(const PreparedCrown& crown, const Atlas& atlas,
                                                      const std::vector<std::size_t>& teeth);
 
 }  // namespace rhizodont

@@ -301,24 +301,23 @@ Eigen::Vector3d CrownFrame::form_direction() const {
   return {form_axis.x(), form_axis.y(), std::sqrt(std::max(0.0, 1 - form_axis.squaredNorm()))};
 }
 
-CrownFrame canonical_frame(const TriangleMesh& open_crown, int fdi, const MeanCrown& mean,
+CrownFrame canonical_frame(const PreparedCrown& crown, int fdi, const MeanCrown& mean,
                            const RegistrationOptions& options) {
   require_in_range(options);
   check_mean(mean);
   const bool right_side = is_right_side(fdi);
-  return frame_from(surface_points(open_crown), growth_axis(open_crown), area_centroid(open_crown), right_side, mean,
+  return frame_from(surface_points(crown.mesh), crown.growth_axis, area_centroid(crown.mesh), right_side, mean,
                     options);
 }
 
-TypeGuess guess_fdi_type(const TriangleMesh& open_crown, const Atlas& atlas, const RegistrationOptions& options) {
+TypeGuess guess_fdi_type(const PreparedCrown& crown, const Atlas& atlas, const RegistrationOptions& options) {
   require_in_range(options);
-  const OrientedPoints points = surface_points(open_crown);
-  const Eigen::Vector3d axis = growth_axis(open_crown);
-  const Point centre = area_centroid(open_crown);
+  const OrientedPoints points = surface_points(crown.mesh);
+  const Point centre = area_centroid(crown.mesh);
   for (const MeanCrown& mean : atlas.types) check_mean(mean);
   std::array<CrownFrame, 2 * tooth_type_count> frames;
-  const auto fit = [&](std::size_t i, const OrientedPoints& crown, const RegistrationOptions& how) {
-    frames[i] = frame_from(crown, axis, centre, i % 2 == 1, atlas.types[i / 2], how);
+  const auto fit = [&](std::size_t i, const OrientedPoints& cloud, const RegistrationOptions& how) {
+    frames[i] = frame_from(cloud, crown.growth_axis, centre, i % 2 == 1, atlas.types[i / 2], how);
   };
   // A rough pass over everything, then the full registration of what came out best.
   constexpr std::size_t candidates = 8;
@@ -368,28 +367,26 @@ RigidFit fit_mean_crown(const OrientedPoints& points, const MeanCrown& mean, boo
   return rigid_fit({upright, found});
 }
 
-std::vector<RigidFit> lay_teeth(const TriangleMesh& open_crown, const Atlas& atlas,
-                                const std::vector<std::size_t>& teeth) {
+std::vector<RigidFit> lay_teeth(const PreparedCrown& crown, const Atlas& atlas, const std::vector<std::size_t>& teeth) {
   constexpr Eigen::Index few = 96, crown_points = 160, mean_points = 256;
   constexpr int start_angles = 24, first_iterations = 4, last_iterations = 6;
   const RegistrationOptions options;
   const Trim trim{options.trim, options.trim};
-  const OrientedPoints points = surface_points(open_crown);
-  const Eigen::Vector3d axis = growth_axis(open_crown);
-  const Point centre = area_centroid(open_crown);
+  const OrientedPoints points = surface_points(crown.mesh);
+  const Point centre = area_centroid(crown.mesh);
   for (const std::size_t tooth : teeth) check_mean(atlas.types.at(tooth / 2));
   const std::vector<Eigen::Matrix3d> rotations = rotations_about_z(start_angles);
 
   std::vector<RigidFit> fits(teeth.size());
   tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t i) {
     Laid laid;
-    laid.upright = upright_frame(axis, centre, teeth[i] % 2 == 1);
-    const OrientedCloud crown = upright_cloud(points, laid.upright);
+    laid.upright = upright_frame(crown.growth_axis, centre, teeth[i] % 2 == 1);
+    const OrientedCloud cloud = upright_cloud(points, laid.upright);
     const OrientedCloud mean = cloud_of(atlas.types[teeth[i] / 2].crown, laid.upright.scale);
     const auto distance_to = [&](const OrientedCloud& from, const CloudFeatures& goal, const Similarity& at) {
       return two_way_distance(features_of(moved(from, at), options.normal_weight_mm), goal, trim);
     };
-    const OrientedCloud rough_crown = thinned(crown, few), rough_mean = thinned(mean, few);
+    const OrientedCloud rough_crown = thinned(cloud, few), rough_mean = thinned(mean, few);
     const CloudFeatures rough_goal = features_of(rough_mean, options.normal_weight_mm);
     std::vector<std::pair<double, Similarity>> starts;
     for (const Eigen::Matrix3d& rotation : rotations) {
@@ -402,7 +399,7 @@ std::vector<RigidFit> lay_teeth(const TriangleMesh& open_crown, const Atlas& atl
       if (const double residual = distance_to(rough_crown, rough_goal, at); residual < laid.found.residual)
         laid.found = {at, residual};
     }
-    const OrientedCloud fine_crown = thinned(crown, crown_points), fine_mean = thinned(mean, mean_points);
+    const OrientedCloud fine_crown = thinned(cloud, crown_points), fine_mean = thinned(mean, mean_points);
     laid.found.at = refined(fine_crown, fine_mean, laid.found.at, options, trim, last_iterations);
     laid.found.residual = distance_to(fine_crown, features_of(fine_mean, options.normal_weight_mm), laid.found.at);
     fits[i] = rigid_fit(laid);

@@ -6,6 +6,7 @@
 #include "rhizodont/mesh.hpp"
 #include "teeth/fdi.hpp"
 #include "teeth/frame.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <array>
 
@@ -41,9 +42,9 @@ struct CrownFrame {
 };
 
 /// Canonical pose of an open crown with a known FDI number: axis and centre from the crown itself, rotation about the
-/// axis by registering the crown to the mean crown of its type. Deterministic. Throws InputError for crowns without
-/// area or axis, UsageError for an unknown FDI number.
-CrownFrame canonical_frame(const TriangleMesh& open_crown, int fdi, const MeanCrown& mean,
+/// axis by registering the crown to the mean crown of its type. Deterministic. Throws UsageError for an unknown FDI
+/// number.
+CrownFrame canonical_frame(const PreparedCrown& crown, int fdi, const MeanCrown& mean,
                            const RegistrationOptions& options = {});
 
 /// What tooth a crown seems to be.
@@ -54,7 +55,7 @@ struct TypeGuess {
 };
 
 /// Tries all 16 types on both sides and returns the best. Throws as canonical_frame.
-TypeGuess guess_fdi_type(const TriangleMesh& open_crown, const Atlas& atlas, const RegistrationOptions& options = {});
+TypeGuess guess_fdi_type(const PreparedCrown& crown, const Atlas& atlas, const RegistrationOptions& options = {});
 
 /// Registers the mean crown of a type to crown points whose axis is not known, such as a crown closed by a cap.
 /// @param points   oriented points of the surface, millimetres, normals outward; the cap may be among them

@@ -69,17 +69,16 @@ std::pair<double, double> length_interval(double length, double expected_at_apex
           std::max(length, possible(length + scales.length_high * expected_at_apex))};
 }
 
-std::vector<double> expected_distances(const TriangleMesh& tooth, const TriangleMesh& crown,
+std::vector<double> expected_distances(const TriangleMesh& tooth, const PreparedCrown& crown,
                                        const PredictedTooth& predicted, double reach) {
   constexpr std::size_t neighbours = 6;
   const NearestVertexIndex points(predicted.cloud.points);
-  const ClosestPointIndex surface(crown);
   std::vector<double> result(tooth.vertices.size(), 0.0);
-  tbb::parallel_for(crown.vertices.size(), tooth.vertices.size(), [&](std::size_t v) {
+  tbb::parallel_for(crown.mesh.vertices.size(), tooth.vertices.size(), [&](std::size_t v) {
     double sum = 0;
     for (const NearVertex& near : points.nearest(tooth.vertices[v], neighbours))
       sum += predicted.expected_distance[static_cast<std::size_t>(near.index)];
-    const double away = surface.closest(tooth.vertices[v]).distance / reach;
+    const double away = crown.surface.closest(tooth.vertices[v]).distance / reach;
     result[v] = sum / neighbours * (1 - std::exp(-away * away));
   });
   return result;

@@ -4,6 +4,7 @@
 
 #include "completion/complete_points.hpp"
 #include "rhizodont/mesh.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <map>
 #include <optional>
@@ -41,7 +42,7 @@ std::pair<double, double> length_interval(double length, double expected_at_apex
 /// crown, whose own surface corrects the prediction around it over `reach` mm (> 0), and is 0 on the crown itself.
 /// @param tooth   the crown's vertices first
 /// @param crown   the first vertices and triangles of the tooth
-std::vector<double> expected_distances(const TriangleMesh& tooth, const TriangleMesh& crown,
+std::vector<double> expected_distances(const TriangleMesh& tooth, const PreparedCrown& crown,
                                        const PredictedTooth& predicted, double reach);
 
 }  // namespace rhizodont

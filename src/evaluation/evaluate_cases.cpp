@@ -5,6 +5,7 @@
 #include "mesh/closest_point.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "teeth/fdi.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,10 +27,11 @@ bool is_mesh_file(const std::filesystem::path& file) {
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 
-/// "36" or "36_anything".
-bool is_permanent_tooth(std::string_view number) {
-  return number.size() >= 2 && (number.size() == 2 || number[2] == '_') && number[0] >= '1' && number[0] <= '4' &&
-         number[1] >= '1' && number[1] <= '8';
+/// The permanent tooth of "36" or "36_anything".
+std::optional<int> tooth_of(std::string_view number) {
+  const auto fdi = read_fdi(number.substr(0, 2));
+  const bool alone = number.size() <= 2 || number[2] == '_';
+  return fdi && is_permanent_tooth(*fdi) && alone ? fdi : std::nullopt;
 }
 
 /// Mesh files prefix_NUMBER.extension of a folder by NUMBER.
@@ -99,14 +101,15 @@ std::vector<EvaluationCase> find_evaluation_cases(const std::filesystem::path& f
   if (crowns.empty()) throw InputError("The folder " + folder.string() + " has no crown_FDI files.");
   std::vector<EvaluationCase> cases;
   for (const auto& [number, crown] : crowns) {
-    if (!is_permanent_tooth(number))
+    const std::optional<int> fdi = tooth_of(number);
+    if (!fdi)
       throw InputError("The number in the file name " + crown.filename().string() +
                        " is not that of a permanent tooth.");
     const auto tooth = teeth.find(number);
     if (tooth == teeth.end())
       throw InputError("The crown " + crown.filename().string() + " has no whole tooth tooth_" + number +
                        " beside it.");
-    cases.push_back({std::stoi(number.substr(0, 2)), number.size() > 3 ? number.substr(3) : "", crown, tooth->second});
+    cases.push_back({*fdi, number.size() > 3 ? number.substr(3) : "", crown, tooth->second});
   }
   return cases;
 }

@@ -15,6 +15,7 @@
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "teeth/fdi.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -180,10 +181,7 @@ void require_in_range(const TemplateFitOptions& options) {
 }  // namespace
 
 TemplateTooth load_template_tooth(const std::filesystem::path& folder, int fdi) {
-  const int quadrant = fdi / 10, place = fdi % 10;
-  if (quadrant < 1 || quadrant > 4 || place < 1 || place > 8)
-    throw UsageError(std::to_string(fdi) + " is not the FDI number of a permanent tooth.");
-  const int left = 10 * (quadrant <= 2 ? 2 : 3) + place;
+  const int left = fdi_of_type(tooth_type_of_fdi(fdi), false);
   const MeshFile file = load_mesh(folder / ("tooth_" + std::to_string(left) + ".ply"));
 
   const std::vector<bool> enamel = enamel_vertices(file);
@@ -192,7 +190,7 @@ TemplateTooth load_template_tooth(const std::filesystem::path& folder, int fdi) 
     in_crown.push_back(
         std::all_of(triangle.begin(), triangle.end(), [&](int v) { return enamel[static_cast<std::size_t>(v)]; }));
   TemplateTooth tooth{file.mesh, submesh(file.mesh, in_crown).mesh, {}};
-  if (quadrant == 1 || quadrant == 4) {
+  if (is_right_side(fdi)) {
     tooth.mesh = mirrored(tooth.mesh);
     tooth.crown = mirrored(tooth.crown);
   }

@@ -135,7 +135,7 @@ void measure_turns(ToothFamilies& families) {
     MeanCrown mean;
     for (const Point& p : samples.points) mean.crown.points.push_back(upright.to_canonical(p));
     mean.crown.normals = samples.normals;
-    const CrownFrame found = canonical_frame(borrowed, fdi_of_type(loan.type, false), mean);
+    const CrownFrame found = canonical_frame(prepare_crown(borrowed), fdi_of_type(loan.type, false), mean);
     const Eigen::Matrix3d& r = found.frame.rotation;
     loan.turn = -std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
     Eigen::Vector3d up = found.frame.direction_to_world(found.form_direction());

@@ -36,7 +36,7 @@ double smallest_angle(const Point& a, const Point& b, const Point& c) {
   return product > 0 ? std::acos(std::clamp(dot / std::sqrt(product), -1.0, 1.0)) : 0.0;
 }
 
-FittedPatch::FittedPatch(const RestoredTooth& tooth, const SurfaceWalk& walk, const EdgeLengths& lengths)
+FittedPatch::FittedPatch(const JoinedTooth& tooth, const SurfaceWalk& walk, const EdgeLengths& lengths)
     : walk_(walk),
       lengths_(lengths),
       mesh_(tooth.mesh.vertices, {tooth.mesh.triangles.begin() + tooth.crown_triangles, tooth.mesh.triangles.end()},
@@ -162,7 +162,7 @@ bool FittedPatch::can_collapse(int h) const {
   return good;
 }
 
-TriangleMesh FittedPatch::tooth(const RestoredTooth& before) const {
+TriangleMesh FittedPatch::tooth(const JoinedTooth& before) const {
   TriangleMesh mesh;
   mesh.vertices.assign(before.mesh.vertices.begin(), before.mesh.vertices.begin() + before.crown_vertices);
   mesh.triangles.assign(before.mesh.triangles.begin(), before.mesh.triangles.begin() + before.crown_triangles);

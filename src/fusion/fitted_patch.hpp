@@ -19,7 +19,7 @@ double smallest_angle(const Point& a, const Point& b, const Point& c);
 class FittedPatch {
  public:
   /// Keeps references to `walk` and `lengths`.
-  FittedPatch(const RestoredTooth& tooth, const SurfaceWalk& walk, const EdgeLengths& lengths);
+  FittedPatch(const JoinedTooth& tooth, const SurfaceWalk& walk, const EdgeLengths& lengths);
 
   const PatchMesh& mesh() const { return mesh_; }
   const Point& point(int v) const { return mesh_.points[static_cast<std::size_t>(v)]; }
@@ -54,7 +54,7 @@ class FittedPatch {
   void collapse(int h) { mesh_.collapse(h); }
 
   /// The tooth with these triangles in the place of its new ones.
-  TriangleMesh tooth(const RestoredTooth& before) const;
+  TriangleMesh tooth(const JoinedTooth& before) const;
 
  private:
   bool faces_outward(const Point& a, const Point& b, const Point& c, int near) const;

@@ -11,7 +11,6 @@
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
-#include "teeth/crown_border.hpp"
 
 #include <fmt/format.h>
 
@@ -40,21 +39,21 @@ double border_gap(const TriangleMesh& crown, const CrownBorder& border, const Su
 /// What all attempts share.
 struct Ground {
   const TriangleMesh& crown;
+  const CrownBorder& border;
   const TriangleMesh& surface;
   const Eigen::Vector3d& growth_axis;
-  CrownBorder border;
   CrownDistances distances;
   SurfaceWalk walk;
   EdgeLengths lengths;
   double gap;  // mm, how far the guiding surface misses the border: exceeded by a twentieth of its vertices
 
-  Ground(const TriangleMesh& the_crown, const TriangleMesh& guiding_surface, const Eigen::Vector3d& axis,
+  Ground(const PreparedCrown& prepared, const TriangleMesh& guiding_surface, const Eigen::Vector3d& axis,
          const FuseOptions& options)
-      : crown(the_crown),
+      : crown(prepared.mesh),
+        border(prepared.border),
         surface(guiding_surface),
         growth_axis(axis),
-        border(find_crown_border(crown)),
-        distances(crown_distances(surface, crown, border)),
+        distances(crown_distances(surface, prepared)),
         walk(surface),
         lengths(edge_lengths(options.edge_growth, options)),
         gap(border_gap(crown, border, walk)) {}
@@ -65,7 +64,7 @@ struct Ground {
 };
 
 /// Positions of the vertices of new triangles that cut others.
-std::vector<Point> cutting_points(const RestoredTooth& tooth, const std::vector<std::pair<int, int>>& cuts) {
+std::vector<Point> cutting_points(const JoinedTooth& tooth, const std::vector<std::pair<int, int>>& cuts) {
   std::vector<Point> points;
   for (const auto& [a, b] : cuts)
     for (const int t : {a, b}) {
@@ -93,7 +92,7 @@ class Stopwatch {
 void improve_triangles(const Ground& ground, const FuseOptions& options, FusedTooth& fused) {
   std::vector<Point> frozen;
   for (int i = 1; i <= options.remesh_attempts; ++i) {
-    RestoredTooth remeshed = fused.tooth;
+    JoinedTooth remeshed = fused.tooth;
     const double radius = i * ground.lengths.root();
     const RootRemeshing done = remesh_root(remeshed, ground.walk, ground.lengths, frozen, radius, options.remesh);
     const auto cuts = self_intersecting_triangles(remeshed.mesh);
@@ -179,7 +178,7 @@ FusedTooth attempt(const Ground& ground, const FuseOptions& options, const Separ
 }
 
 /// The smallest angle of new triangles relative to what is wanted there: 1 or more if it is reached everywhere.
-double least_angle_share(const RestoredTooth& tooth, const TransitionOptions& wanted) {
+double least_angle_share(const JoinedTooth& tooth, const TransitionOptions& wanted) {
   double least = std::numeric_limits<double>::max();
   for (std::size_t t = static_cast<std::size_t>(tooth.crown_triangles); t < tooth.mesh.triangles.size(); ++t) {
     const Triangle& tri = tooth.mesh.triangles[t];
@@ -227,7 +226,7 @@ void require_in_range(const FuseOptions& options) {
 
 }  // namespace
 
-FusedTooth fuse_crown_and_root(const TriangleMesh& crown, const TriangleMesh& guiding_surface,
+FusedTooth fuse_crown_and_root(const PreparedCrown& crown, const TriangleMesh& guiding_surface,
                                const Eigen::Vector3d& growth_axis, const FuseOptions& options) {
   require_in_range(options);
   FuseSeconds spent;

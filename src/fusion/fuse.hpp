@@ -8,6 +8,7 @@
 #include "fusion/root_sites.hpp"
 #include "fusion/separate.hpp"
 #include "fusion/transition.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <string>
 #include <vector>
@@ -43,7 +44,7 @@ struct FuseSeconds {
 /// A closed tooth made of the crown and the guiding surface's root, with what the steps on the way did: those of the
 /// attempt that gave it, and nothing of those before, but for the seconds.
 struct FusedTooth {
-  RestoredTooth tooth;
+  JoinedTooth tooth;
   RootRemeshing remeshing;
   Transition transition;
   int root_sites = 0;               ///< root vertices that the dual was taken of
@@ -59,9 +60,9 @@ struct FusedTooth {
 /// Joins crown and guiding surface: separate, choose root vertices, join by the restricted Voronoi diagram, restore the
 /// crown, improve the root's triangles and smooth the transition. Every result is tested for self-intersection; a step
 /// that would break the tooth is left out and said in the warnings. If no closed tooth comes out, the root is started
-/// farther from the crown. `crown` is open, manifold, one component, its border loops not touching; `growth_axis` a
-/// unit vector to the crown. Throws InputError for a closed crown, NoResultError where no attempt gives a closed tooth.
-FusedTooth fuse_crown_and_root(const TriangleMesh& crown, const TriangleMesh& guiding_surface,
+/// farther from the crown. `crown` is manifold, one component, its border loops not touching; `growth_axis` a unit
+/// vector to the crown, the root's own if it leans. Throws NoResultError where no attempt gives a closed tooth.
+FusedTooth fuse_crown_and_root(const PreparedCrown& crown, const TriangleMesh& guiding_surface,
                                const Eigen::Vector3d& growth_axis, const FuseOptions& options = {});
 
 }  // namespace rhizodont

@@ -146,7 +146,7 @@ void require_in_range(const RemeshRootOptions& options) {
                                {"mending_places", options.mending_places, OptionRange::at_least(0)}});
 }
 
-RootRemeshing remesh_root(RestoredTooth& tooth, const SurfaceWalk& guiding_surface, const EdgeLengths& lengths,
+RootRemeshing remesh_root(JoinedTooth& tooth, const SurfaceWalk& guiding_surface, const EdgeLengths& lengths,
                           const std::vector<Point>& frozen_centres, double frozen_radius,
                           const RemeshRootOptions& options) {
   require_in_range(options);

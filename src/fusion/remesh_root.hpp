@@ -40,7 +40,7 @@ struct RootRemeshing {
 /// collapsed, edges turned until they are Delaunay, free vertices relaxed, small angles mended. Crown vertices and
 /// triangles stay the first of the mesh, as they were. Nothing within `frozen_radius` (mm) of `frozen_centres` is
 /// changed. The result is not tested for self-intersection.
-RootRemeshing remesh_root(RestoredTooth& tooth, const SurfaceWalk& guiding_surface, const EdgeLengths& lengths,
+RootRemeshing remesh_root(JoinedTooth& tooth, const SurfaceWalk& guiding_surface, const EdgeLengths& lengths,
                           const std::vector<Point>& frozen_centres, double frozen_radius,
                           const RemeshRootOptions& options = {});
 

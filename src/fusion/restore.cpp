@@ -271,7 +271,7 @@ void require_in_range(const RestoreOptions& options) {
   require_ranges("restoring", {{"rounds", options.rounds, OptionRange::at_least(0)}});
 }
 
-RestoredTooth restore_crown(const TriangleMesh& crown, const Joining& joining, const RestoreOptions& options) {
+JoinedTooth restore_crown(const TriangleMesh& crown, const Joining& joining, const RestoreOptions& options) {
   require_in_range(options);
   RootPatch patch(crown, joining);
   for (int round = 0;; ++round) {
@@ -281,7 +281,7 @@ RestoredTooth restore_crown(const TriangleMesh& crown, const Joining& joining, c
     const FilledMesh filled = fill_holes(open);
     const auto cuts = options.test_cuts ? self_intersecting_triangles(filled.mesh) : std::vector<std::pair<int, int>>{};
     if (cuts.empty()) {
-      RestoredTooth tooth;
+      JoinedTooth tooth;
       tooth.mesh = filled.mesh;
       tooth.crown_vertices = static_cast<int>(crown.vertices.size());
       tooth.crown_triangles = static_cast<int>(crown.triangles.size());

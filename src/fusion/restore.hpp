@@ -17,7 +17,7 @@ void require_in_range(const RestoreOptions& options);
 
 /// A closed tooth that contains the crown as it was: vertices [0, crown_vertices) and triangles [0, crown_triangles)
 /// are the crown's own, in the crown's order; no Steiner point is left.
-struct RestoredTooth {
+struct JoinedTooth {
   TriangleMesh mesh;
   int crown_vertices = 0;
   int crown_triangles = 0;
@@ -33,6 +33,6 @@ struct RestoredTooth {
 /// `crown`: the one given to `join_crown_and_root`, manifold, its border loops not touching, one component.
 /// Throws NoResultError if the dual has no root or one that is closed by itself; with ids of the triangles, if no
 /// closed manifold without self-intersection is found.
-RestoredTooth restore_crown(const TriangleMesh& crown, const Joining& joining, const RestoreOptions& options = {});
+JoinedTooth restore_crown(const TriangleMesh& crown, const Joining& joining, const RestoreOptions& options = {});
 
 }  // namespace rhizodont

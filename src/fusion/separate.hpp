@@ -3,7 +3,7 @@
 #pragma once
 
 #include "rhizodont/mesh.hpp"
-#include "teeth/crown_border.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <vector>
 

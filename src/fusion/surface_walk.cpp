@@ -1,49 +1,14 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Closest point of a triangle by the regions of its plane: C. Ericson, "Real-Time Collision Detection", 2005, 5.1.5.
-
 #include "fusion/surface_walk.hpp"
 
+#include "mesh/closest_on_triangle.hpp"
 #include "mesh/geometry.hpp"
 
 #include <limits>
 
 namespace rhizodont {
-namespace {
-
-/// Closest point of a triangle and where it lies: inside, on the edge from `feature` on, or at corner `feature`.
-struct OnTriangle {
-  enum class Where { inside, edge, corner };
-  Point point;
-  Where where = Where::inside;
-  int feature = 0;
-};
-
-OnTriangle closest_on_triangle(const Point& p, const Point& a, const Point& b, const Point& c) {
-  using Where = OnTriangle::Where;
-  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return {a, Where::corner, 0};
-  const Eigen::Vector3d bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return {b, Where::corner, 1};
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return {a + d1 / (d1 - d3) * ab, Where::edge, 0};
-  const Eigen::Vector3d cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return {c, Where::corner, 2};
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return {a + d2 / (d2 - d6) * ac, Where::edge, 2};
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return {b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b), Where::edge, 1};
-  const double sum = va + vb + vc;
-  return {a + vb / sum * ab + vc / sum * ac, Where::inside, 0};
-}
-
-}  // namespace
-
 SurfaceWalk::SurfaceWalk(const TriangleMesh& surface)
     : surface_(surface), adjacency_(triangle_adjacency(surface)), around_(vertex_triangles(surface)) {
   normals_.reserve(surface.triangles.size());

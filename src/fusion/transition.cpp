@@ -136,7 +136,7 @@ Eigen::MatrixXd solve_biharmonic(const TriangleMesh& mesh, const std::vector<int
 /// Displacements with the share of each that is applied.
 class SafeMoves {
  public:
-  SafeMoves(const RestoredTooth& tooth, const std::vector<int>& vertices, const Eigen::MatrixXd& target,
+  SafeMoves(const JoinedTooth& tooth, const std::vector<int>& vertices, const Eigen::MatrixXd& target,
             const TransitionOptions& options)
       : before_(tooth.mesh),
         crown_vertices_(tooth.crown_vertices),
@@ -224,7 +224,7 @@ class SafeMoves {
   std::vector<std::size_t> concerned_;
 };
 
-double border_edge_length(const RestoredTooth& tooth) {
+double border_edge_length(const JoinedTooth& tooth) {
   double sum = 0;
   int count = 0;
   for (std::size_t t = static_cast<std::size_t>(tooth.crown_triangles); t < tooth.mesh.triangles.size(); ++t) {
@@ -240,7 +240,7 @@ double border_edge_length(const RestoredTooth& tooth) {
   return count > 0 ? sum / count : 0;
 }
 
-double chosen_width(const RestoredTooth& tooth, const TransitionOptions& options) {
+double chosen_width(const JoinedTooth& tooth, const TransitionOptions& options) {
   if (options.width) return *options.width;
   return std::clamp(std::max(options.gap / options.slope, options.rows * border_edge_length(tooth)),
                     options.least_width, options.largest_width);
@@ -261,7 +261,7 @@ void require_in_range(const TransitionOptions& options) {
                   {"cut_rounds", options.cut_rounds, OptionRange::at_least(1)}});
 }
 
-Transition smooth_transition(RestoredTooth& tooth, const TransitionOptions& options) {
+Transition smooth_transition(JoinedTooth& tooth, const TransitionOptions& options) {
   require_in_range(options);
   Transition result;
   result.width = chosen_width(tooth, options);

@@ -38,6 +38,6 @@ struct Transition {
 /// L M^-1 L x = 0 with all other vertices fixed, so that the surface continues the crown's slope (paper, 3.6). Crown
 /// vertices never move. Where a triangle would turn over, lose a good angle or cut another, the vertices about it move
 /// less or not at all.
-Transition smooth_transition(RestoredTooth& tooth, const TransitionOptions& options = {});
+Transition smooth_transition(JoinedTooth& tooth, const TransitionOptions& options = {});
 
 }  // namespace rhizodont

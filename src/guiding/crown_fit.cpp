@@ -9,10 +9,10 @@
 
 #include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/closest_on_triangle.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/self_intersection.hpp"
-#include "teeth/crown_border.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
 #include <Eigen/Geometry>
@@ -28,52 +28,25 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// The crown as something to be drawn onto.
-class CrownSurface {
+/// Where a vertex of the surface belongs on the crown.
+class CrownPlaces {
  public:
-  CrownSurface(const TriangleMesh& crown, double reach)
-      : crown_(crown), border_(find_crown_border(crown)), index_(crown), reach_(reach) {}
+  CrownPlaces(const PreparedCrown& crown, double reach) : crown_(crown), reach_(reach) {}
 
   /// The closest point of the crown if it is near and the surface runs alike there. A point of the border has to be
   /// nearer: it pulls sideways.
   std::optional<Point> place_for(const Point& p, const Eigen::Vector3d& normal, double border_reach = 0) const {
-    const ClosestPoint closest = index_.closest(p);
+    const ClosestPoint closest = crown_.surface.closest(p);
     if (closest.distance > reach_) return std::nullopt;
-    if (closest.distance > border_reach && lies_on_border(crown_, border_, closest)) return std::nullopt;
-    if (triangle_normal(crown_, at(closest.triangle)).dot(normal) < 0.3) return std::nullopt;
+    if (closest.distance > border_reach && lies_on_border(crown_, closest)) return std::nullopt;
+    if (triangle_normal(crown_.mesh, at(closest.triangle)).dot(normal) < 0.3) return std::nullopt;
     return closest.point;
   }
 
  private:
-  const TriangleMesh& crown_;
-  CrownBorder border_;
-  ClosestPointIndex index_;
+  const PreparedCrown& crown_;
   double reach_;
 };
-
-/// Squared distance of a point from a triangle (Ericson, Real-Time Collision Detection, 2005, 5.1.5).
-double squared_distance(const Point& p, const Point& a, const Point& b, const Point& c) {
-  const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0 && d2 <= 0) return ap.squaredNorm();
-  const Eigen::Vector3d bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0 && d4 <= d3) return bp.squaredNorm();
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - d1 / (d1 - d3) * ab).squaredNorm();
-  const Eigen::Vector3d cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0 && d5 <= d6) return cp.squaredNorm();
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - d2 / (d2 - d6) * ac).squaredNorm();
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) {
-    const double t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
-    return (bp - t * (c - b)).squaredNorm();
-  }
-  const double scale = 1 / (va + vb + vc);
-  return (ap - vb * scale * ab - vc * scale * ac).squaredNorm();
-}
 
 /// A closed surface whose edges can be split.
 class SplittableSurface {
@@ -101,7 +74,8 @@ class SplittableSurface {
 
   double squared_distance_to(int t, const Point& p) const {
     const Triangle& c = mesh_.triangles[at(t)];
-    return squared_distance(p, mesh_.vertices[at(c[0])], mesh_.vertices[at(c[1])], mesh_.vertices[at(c[2])]);
+    return closest_on_triangle(p, mesh_.vertices[at(c[0])], mesh_.vertices[at(c[1])], mesh_.vertices[at(c[2])])
+        .squared_distance;
   }
 
   double squared_longest_edge(int t) const { return squared_length(t, longest_edge(t)); }
@@ -203,7 +177,7 @@ class SplittableSurface {
 };
 
 /// Where each vertex is to go. Beyond the crown a vertex goes with its neighbours, ring after ring by less.
-std::vector<Eigen::Vector3d> wanted_moves(const TriangleMesh& surface, const CrownSurface& crown, int fading_rings) {
+std::vector<Eigen::Vector3d> wanted_moves(const TriangleMesh& surface, const CrownPlaces& crown, int fading_rings) {
   const std::vector<Eigen::Vector3d> normals = vertex_normals(surface);
   std::vector<Eigen::Vector3d> moves(surface.vertices.size(), Eigen::Vector3d::Zero());
   std::vector<char> settled(moves.size(), 0);
@@ -257,7 +231,7 @@ int move_vertices(TriangleMesh& surface, std::vector<Eigen::Vector3d> moves) {
 }
 
 /// Splits triangles below or above crown vertices that are too far away, round by round.
-int refine(TriangleMesh& surface, const TriangleMesh& crown, const CrownSurface& drawn_to,
+int refine(TriangleMesh& surface, const TriangleMesh& crown, const CrownPlaces& drawn_to,
            const CrownFitOptions& options) {
   constexpr double border_reach = 0.1;  // mm
   const std::size_t first_added = surface.vertices.size();
@@ -308,13 +282,13 @@ void require_in_range(const CrownFitOptions& options) {
 
 }  // namespace
 
-CrownFit fit_to_crown(TriangleMesh& surface, const TriangleMesh& crown, const CrownFitOptions& options) {
+CrownFit fit_to_crown(TriangleMesh& surface, const PreparedCrown& crown, const CrownFitOptions& options) {
   require_in_range(options);
-  const CrownSurface drawn_to(crown, options.reach);
+  const CrownPlaces drawn_to(crown, options.reach);
   const TriangleMesh before = surface;
   CrownFit fit;
   fit.moved_vertices = move_vertices(surface, wanted_moves(surface, drawn_to, options.fading_rings));
-  fit.added_vertices = refine(surface, crown, drawn_to, options);
+  fit.added_vertices = refine(surface, crown.mesh, drawn_to, options);
   if (!self_intersecting_triangles(surface).empty()) {
     surface = before;
     fit = {0, 0, true};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rhizodont/mesh.hpp"
+#include "teeth/prepared_crown.hpp"
 
 namespace rhizodont {
 
@@ -26,7 +27,7 @@ struct CrownFit {
 /// or a cusp, its longest edge is split (Rivara 1984) and the new vertex set on the crown. Triangles away from the
 /// crown stay as they are. The surface stays closed, of the same topology, and free of self-intersections.
 ///
-/// Precondition: `surface` closed, oriented and manifold, `crown` open. Errors as of `find_crown_border`.
-CrownFit fit_to_crown(TriangleMesh& surface, const TriangleMesh& crown, const CrownFitOptions& options = {});
+/// Precondition: `surface` closed, oriented and manifold.
+CrownFit fit_to_crown(TriangleMesh& surface, const PreparedCrown& crown, const CrownFitOptions& options = {});
 
 }  // namespace rhizodont

@@ -12,7 +12,7 @@
 
 namespace rhizodont {
 
-FittedSurface fitted_guiding_surface(const GuidingCloud& cloud, const TriangleMesh& crown, double e) {
+FittedSurface fitted_guiding_surface(const GuidingCloud& cloud, const PreparedCrown& crown, double e) {
   GuidingSurfaceOptions options;
   options.isosurface.e = e;
   const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));

@@ -16,6 +16,6 @@ struct FittedSurface {
 
 /// The guiding surface M (paper, 3.5): indicator function of the cloud, meshed by GradNormal with cells of edge e (mm),
 /// and drawn onto the crown. Throws what `guiding_surface` and `fit_to_crown` throw.
-FittedSurface fitted_guiding_surface(const GuidingCloud& cloud, const TriangleMesh& crown, double e);
+FittedSurface fitted_guiding_surface(const GuidingCloud& cloud, const PreparedCrown& crown, double e);
 
 }  // namespace rhizodont

@@ -9,14 +9,12 @@
 #include "guiding/guiding_cloud.hpp"
 
 #include "base/option_range.hpp"
-#include "mesh/closest_point.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/sampling.hpp"
 #include "poisson/neighbours.hpp"
 #include "poisson/orientation.hpp"
 #include "rhizodont/error.hpp"
-#include "teeth/crown_border.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
 #include <Eigen/Cholesky>
@@ -42,18 +40,16 @@ struct SortedPrediction {
   int dropped = 0;
 };
 
-SortedPrediction sort_prediction(const TriangleMesh& crown, const OrientedPoints& predicted, double gap) {
-  const CrownBorder border = find_crown_border(crown);
-  const ClosestPointIndex index(crown);
+SortedPrediction sort_prediction(const PreparedCrown& crown, const OrientedPoints& predicted, double gap) {
   std::vector<ClosestPoint> closest_points(predicted.points.size());
   tbb::parallel_for(std::size_t{0}, closest_points.size(),
-                    [&](std::size_t i) { closest_points[i] = index.closest(predicted.points[i]); });
+                    [&](std::size_t i) { closest_points[i] = crown.surface.closest(predicted.points[i]); });
   SortedPrediction sorted;
   constexpr double believable = 1.5;  // mm; a predicted crown point farther off says nothing about its neighbours
   for (std::size_t i = 0; i < predicted.points.size(); ++i) {
     const Point& p = predicted.points[i];
     const ClosestPoint& closest = closest_points[i];
-    if (lies_on_border(crown, border, closest)) {
+    if (lies_on_border(crown, closest)) {
       if (closest.distance > gap) {
         sorted.beyond.points.push_back(p);
         sorted.beyond.normals.push_back(predicted.normals[i]);
@@ -63,7 +59,7 @@ SortedPrediction sort_prediction(const TriangleMesh& crown, const OrientedPoints
       continue;
     }
     ++sorted.dropped;
-    const Eigen::Vector3d normal = triangle_normal(crown, static_cast<std::size_t>(closest.triangle));
+    const Eigen::Vector3d normal = triangle_normal(crown.mesh, static_cast<std::size_t>(closest.triangle));
     if (closest.distance > believable || normal.dot(predicted.normals[i]) < 0.3) continue;
     sorted.on_crown.places.push_back(p);
     sorted.on_crown.moves.push_back(closest.point - p);
@@ -152,7 +148,7 @@ void require_in_range(const GuidingCloudOptions& options) {
 
 }  // namespace
 
-GuidingCloud assemble_guiding_cloud(const TriangleMesh& crown, const OrientedPoints& predicted,
+GuidingCloud assemble_guiding_cloud(const PreparedCrown& crown, const OrientedPoints& predicted,
                                     const GuidingCloudOptions& options) {
   require_in_range(options);
   SortedPrediction sorted = sort_prediction(crown, predicted, options.gap);
@@ -163,15 +159,15 @@ GuidingCloud assemble_guiding_cloud(const TriangleMesh& crown, const OrientedPoi
   cloud.predicted_dropped = sorted.dropped;
   for (const Eigen::Vector3d& move : sorted.on_crown.moves)
     cloud.prediction_error += move.norm() / static_cast<double>(sorted.on_crown.moves.size());
-  const auto count =
-      static_cast<std::size_t>(std::max(500.0, surface_area(crown) / (options.crown_spacing * options.crown_spacing)));
-  const SurfaceSamples on_crown = sample_surface(crown, count, 1);
+  const auto count = static_cast<std::size_t>(
+      std::max(500.0, surface_area(crown.mesh) / (options.crown_spacing * options.crown_spacing)));
+  const SurfaceSamples on_crown = sample_surface(crown.mesh, count, 1);
 
   // Orientation looks at root and crown together, so that the root's normals follow on from the crown's. Samples are
   // independent of each other: the first ones cover the crown as evenly as all, and are as dense as the prediction.
-  const auto context = static_cast<std::ptrdiff_t>(
-      std::min(static_cast<double>(count),
-               std::max(200.0, surface_area(crown) / (options.orientation_spacing * options.orientation_spacing))));
+  const auto context = static_cast<std::ptrdiff_t>(std::min(
+      static_cast<double>(count),
+      std::max(200.0, surface_area(crown.mesh) / (options.orientation_spacing * options.orientation_spacing))));
   std::vector<Point> points(on_crown.points.begin(), on_crown.points.begin() + context);
   std::vector<Eigen::Vector3d> hints(on_crown.normals.begin(), on_crown.normals.begin() + context);
   points.insert(points.end(), sorted.beyond.points.begin(), sorted.beyond.points.end());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rhizodont/mesh.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <vector>
 
@@ -33,7 +34,7 @@ struct GuidingCloud {
 /// come from the points.
 /// `predicted`: whole tooth in mm, normals outward but rough. Throws InputError as `orient_normals` does, NoResultError
 /// where no predicted point lies beyond the crown.
-GuidingCloud assemble_guiding_cloud(const TriangleMesh& crown, const OrientedPoints& predicted,
+GuidingCloud assemble_guiding_cloud(const PreparedCrown& crown, const OrientedPoints& predicted,
                                     const GuidingCloudOptions& options = {});
 
 }  // namespace rhizodont

@@ -37,7 +37,7 @@ struct Tools {
 
 /// The part of the crown that is kept so far: open at the base, its border made of simple loops.
 KeptCrown open_crown(const TriangleMesh& crown, bool closed, const Atlas& atlas, const CompleteOptions& options,
-                     CompletionRecord& record) {
+                     IntakeRecord& record) {
   std::vector<bool> keep(crown.triangles.size(), true), never;
   if (closed) {
     if (options.cap == CapHandling::keep)
@@ -52,7 +52,7 @@ KeptCrown open_crown(const TriangleMesh& crown, bool closed, const Atlas& atlas,
 
 /// Lists those of a cap's triangles that are not kept although all their corners, on the border, are.
 void list_dropped_cap(const TriangleMesh& crown, const std::vector<bool>& may_be_cap, const KeptCrown& kept,
-                      CompletionRecord& record) {
+                      IntakeRecord& record) {
   std::vector<bool> is_left(crown.vertices.size(), false), is_kept(crown.triangles.size(), false);
   for (const int v : kept.old_vertices) is_left[static_cast<std::size_t>(v)] = true;
   for (const int t : kept.old_triangles) is_kept[static_cast<std::size_t>(t)] = true;
@@ -116,7 +116,7 @@ KeptCrown all_between(const TriangleMesh& crown, const Submesh& part, const Kept
 
 /// Takes off what the network judges to be skirt, and the spikes on what is left.
 void drop_skirt(const TriangleMesh& crown, KeptCrown& kept, const SurfaceNetwork& network, double threshold,
-                CompletionRecord& record) {
+                IntakeRecord& record) {
   const std::vector<float> confidence =
       on_part(kept.old_vertices, kept.old_triangles, [&] { return skirt_confidence(kept.mesh, network); });
   record.skirt_model = network.metadata();
@@ -131,7 +131,7 @@ void drop_skirt(const TriangleMesh& crown, KeptCrown& kept, const SurfaceNetwork
 
 /// The crown without its cap, of the size of a tooth before and after: what is left of a plinth is smaller.
 KeptCrown open_part(const TriangleMesh& crown, bool closed, const Tools& tools, const CompleteOptions& options,
-                    CompletionRecord& record) {
+                    IntakeRecord& record) {
   require_tooth_size(crown, options.millimetres_per_unit, closed);
   KeptCrown kept = open_crown(crown, closed, tools.atlas, options, record);
   if (!closed) return kept;
@@ -163,7 +163,7 @@ bool is_tooth_surface(const KeptCrown& kept) {
 /// The tooth's own surface in a mesh as a segmentation leaves it: judged on its sound part, then all between the
 /// vertices that are kept. What is no surface near its border is dropped, what is none elsewhere refused.
 KeptCrown tooth_of_raw_crown(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
-                             CompletionRecord& record) {
+                             IntakeRecord& record) {
   require_readable_crown(crown);
   require_one_crown(crown);  // gum beside it is smaller
   const Submesh part = submesh(crown, sound_triangles(crown));
@@ -188,7 +188,7 @@ KeptCrown tooth_of_raw_crown(const TriangleMesh& crown, const Tools& tools, cons
 }
 
 KeptCrown usable_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
-                      CompletionRecord& record) {
+                      IntakeRecord& record) {
   KeptCrown kept;
   if (options.skirt) {
     kept = tooth_of_raw_crown(crown, tools, options, record);
@@ -219,7 +219,7 @@ void number_as_input(KeptCrown& kept, const RepairedMesh& repaired, std::size_t 
 }
 
 /// Puts a whole's numbers in the place of a part's in what was noted of the part.
-void number_record_as_whole(CompletionRecord& record, const std::vector<int>& old_vertices,
+void number_record_as_whole(IntakeRecord& record, const std::vector<int>& old_vertices,
                             const std::vector<int>& old_triangles, std::size_t vertices) {
   if (!record.tooth_confidence.empty())
     record.tooth_confidence = numbered_as_before(record.tooth_confidence, old_vertices, vertices);
@@ -231,7 +231,7 @@ void number_record_as_whole(CompletionRecord& record, const std::vector<int>& ol
 }
 
 /// What `take` keeps of the repaired crown, in the crown's numbers.
-KeptCrown part_of_repaired(const TriangleMesh& crown, RepairedMesh repaired, CompletionRecord& record,
+KeptCrown part_of_repaired(const TriangleMesh& crown, RepairedMesh repaired, IntakeRecord& record,
                            const std::function<KeptCrown(const TriangleMesh&)>& take) {
   KeptCrown kept = on_part(repaired.old_vertices, repaired.old_triangles, [&] { return take(repaired.mesh); });
   number_as_input(kept, repaired, crown.vertices.size());
@@ -242,7 +242,7 @@ KeptCrown part_of_repaired(const TriangleMesh& crown, RepairedMesh repaired, Com
 }
 
 KeptCrown mended_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
-                      CompletionRecord& record);
+                      IntakeRecord& record);
 
 /// Triangles of a cap that is to be dropped and betrays itself by the way in which a program made it.
 std::optional<std::vector<bool>> droppable_made_cap(const TriangleMesh& crown, const CompleteOptions& options) {
@@ -251,7 +251,7 @@ std::optional<std::vector<bool>> droppable_made_cap(const TriangleMesh& crown, c
 }
 
 KeptCrown part_without_cap(const TriangleMesh& closed, const std::vector<bool>& is_cap, const Tools& tools,
-                           const CompleteOptions& options, CompletionRecord& record) {
+                           const CompleteOptions& options, IntakeRecord& record) {
   require_tooth_size(closed, options.millimetres_per_unit, true);
   std::vector<bool> keep = is_cap;
   keep.flip();
@@ -270,7 +270,7 @@ KeptCrown part_without_cap(const TriangleMesh& closed, const std::vector<bool>& 
 /// that is beside the tooth goes with it. A made cap goes before anything is cut: it may cut itself or the crown, and
 /// what a cut leaves of it is no longer known for a cap.
 KeptCrown mended_part(const TriangleMesh& crown, const Tools& tools, const CompleteOptions& options,
-                      CompletionRecord& record) {
+                      IntakeRecord& record) {
   const auto take = [&](const TriangleMesh& mesh) { return usable_part(mesh, tools, options, record); };
   if (options.repair) {
     RepairOptions first;
@@ -294,18 +294,14 @@ KeptCrown mended_part(const TriangleMesh& crown, const Tools& tools, const Compl
 
 }  // namespace
 
-KeptCrown take_crown(const TriangleMesh& input, const Atlas& atlas, const std::optional<SurfaceNetwork>& skirt,
-                     const CompleteOptions& options, CompletionRecord& record) {
+TakenCrown take_crown(const TriangleMesh& input, const Atlas& atlas, const std::optional<SurfaceNetwork>& skirt,
+                      const CompleteOptions& options) {
   if (options.skirt && !skirt)
     throw UsageError("The models' folder has no weights to find a skirt with (skirt.safetensors): use --skirt keep.");
   const Tools tools{atlas, skirt ? &*skirt : nullptr};
-  const TriangleMesh crown = scaled(input, options.millimetres_per_unit);
-  KeptCrown kept = mended_part(crown, tools, options, record);
-  record.crown_triangles = static_cast<int>(input.triangles.size());
-  record.kept_triangles = static_cast<int>(kept.mesh.triangles.size());
-  record.kept_vertices = kept.old_vertices;
-  for (const DroppedVertex& d : kept.dropped) record.dropped_vertices.push_back({d.vertex, d.reason});
-  return kept;
+  TakenCrown taken;
+  taken.kept = mended_part(scaled(input, options.millimetres_per_unit), tools, options, taken.record);
+  return taken;
 }
 
 }  // namespace rhizodont

@@ -38,9 +38,9 @@ std::string refusal(const CrownLikeness& likeness, bool given) {
 
 }  // namespace
 
-CrownLikeness judge_crown(const TriangleMesh& crown, std::optional<int> fdi, const Atlas& atlas,
+CrownLikeness judge_crown(const PreparedCrown& crown, std::optional<int> fdi, const Atlas& atlas,
                           const LikenessModel& model) {
-  const Likeness judged = likeness(crown, model.classifier);
+  const Likeness judged = likeness(crown.mesh, crown.growth_axis, model.classifier);
   // The tooth that it is said to be first, then the most probable ones.
   std::vector<std::size_t> teeth(tooth_count);
   std::iota(teeth.begin(), teeth.end(), std::size_t{0});

@@ -5,6 +5,7 @@
 #include "completion/likeness.hpp"
 #include "completion/mean_crowns.hpp"
 #include "rhizodont/complete.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <optional>
 
@@ -14,7 +15,7 @@ namespace rhizodont {
 /// @param crown  open at its base, mm
 /// @param fdi    the tooth it is said to be; unset: the most probable one is taken
 /// Throws InputError for what looks like none of the 32 teeth, and as `likeness`.
-CrownLikeness judge_crown(const TriangleMesh& crown, std::optional<int> fdi, const Atlas& atlas,
+CrownLikeness judge_crown(const PreparedCrown& crown, std::optional<int> fdi, const Atlas& atlas,
                           const LikenessModel& model);
 
 /// A sentence for the user, or nothing for a crown that looks like the tooth it is said to be. `guessed`: nobody said

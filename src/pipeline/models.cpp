@@ -11,10 +11,14 @@
 
 namespace rhizodont {
 
-CompletionModels::CompletionModels(std::unique_ptr<Content> content) : content_(std::move(content)) {}
+CompletionModels::CompletionModels(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
 CompletionModels::CompletionModels(CompletionModels&&) noexcept = default;
 CompletionModels& CompletionModels::operator=(CompletionModels&&) noexcept = default;
 CompletionModels::~CompletionModels() = default;
+
+const std::shared_ptr<const CompletionModels::Content>& content_of(const CompletionModels& models) {
+  return models.content_;
+}
 
 namespace {
 
@@ -42,7 +46,7 @@ std::vector<std::filesystem::path> model_files(const std::filesystem::path& fold
 
 CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
   model_files(folder);
-  auto content = std::make_unique<Content>(Content{
+  auto content = std::make_shared<Content>(Content{
       load_atlas(folder / atlas_file), CompletionNetwork::load(folder / completion_file), std::nullopt, std::nullopt});
   std::error_code ignored;
   if (const auto skirt = folder / skirt_file; std::filesystem::exists(skirt, ignored))

@@ -8,6 +8,7 @@
 #include "learning/surface_network.hpp"
 #include "rhizodont/complete.hpp"
 
+#include <memory>
 #include <optional>
 
 namespace rhizodont {
@@ -18,5 +19,8 @@ struct CompletionModels::Content {
   std::optional<SurfaceNetwork> skirt;
   std::optional<LikenessModel> likeness;
 };
+
+/// What the models are made of: for the rooms that run them.
+const std::shared_ptr<const CompletionModels::Content>& content_of(const CompletionModels& models);
 
 }  // namespace rhizodont

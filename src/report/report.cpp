@@ -28,14 +28,14 @@ Json rows(const Eigen::Matrix3d& m) {
 
 Json crown_json(const CompletionRecord& record) {
   std::map<std::string, std::vector<int>> by_reason;
-  for (const DroppedCrownVertex& d : record.dropped_vertices) by_reason[d.reason].push_back(d.vertex);
+  for (const DroppedCrownVertex& d : record.crown.dropped_vertices) by_reason[d.reason].push_back(d.vertex);
   Json dropped = Json::object();
   for (const auto& [reason, vertices] : by_reason) dropped[reason] = vertices;
-  return {{"triangles", record.crown_triangles},
-          {"kept_triangles", record.kept_triangles},
-          {"cap_dropped", record.cap_dropped},
+  return {{"triangles", record.crown.triangles},
+          {"kept_triangles", record.crown.kept_triangles},
+          {"cap_dropped", record.crown.cap_dropped},
           {"dropped_vertices_by_reason", dropped},
-          {"kept_vertices", record.kept_vertices}};
+          {"kept_vertices", record.crown.kept_vertices}};
 }
 
 Json repairs_json(const std::vector<RepairStep>& repairs) {
@@ -62,21 +62,21 @@ Json likeness_json(const std::optional<CrownLikeness>& likeness) {
 }
 
 Json frame_json(const CompletionRecord& record) {
-  return {{"growth_axis", numbers(record.growth_axis)},
-          {"rotation", rows(record.frame_rotation)},
-          {"centre_mm", numbers(record.frame_centre)},
-          {"mirrored", record.frame_mirrored},
-          {"distance_to_mean_crown_mm", record.type_residual_mm}};
+  return {{"growth_axis", numbers(record.frame.growth_axis)},
+          {"rotation", rows(record.frame.rotation)},
+          {"centre_mm", numbers(record.frame.centre)},
+          {"mirrored", record.frame.mirrored},
+          {"distance_to_mean_crown_mm", record.frame.distance_to_mean_crown_mm}};
 }
 
 Json root_json(const CompletionRecord& record) {
   constexpr std::array<const char*, 3> sources{"network", "network, laid anew", "mean tooth"};
-  Json json{{"source", sources[static_cast<std::size_t>(record.root_source)]},
-            {"length_mm", record.root_length_mm},
-            {"tooth_length_mm", record.tooth_length_mm},
-            {"apex_expected_distance_mm", record.apex_expected_distance_mm},
+  Json json{{"source", sources[static_cast<std::size_t>(record.root.source)]},
+            {"length_mm", record.root.length_mm},
+            {"tooth_length_mm", record.root.tooth_length_mm},
+            {"apex_expected_distance_mm", record.root.apex_expected_distance_mm},
             {"interval", nullptr}};
-  if (const auto& interval = record.root_interval)
+  if (const auto& interval = record.root.interval)
     json["interval"] = {{"probability", 0.8},
                         {"length_low_mm", interval->length_low_mm},
                         {"length_high_mm", interval->length_high_mm},
@@ -94,22 +94,22 @@ Json steering_json(const RootSteering& steering) {
 }
 
 Json joining_json(const CompletionRecord& record) {
-  return {{"guiding_vertices", record.guiding_vertices},
-          {"crown_to_guiding_surface_mean_mm", record.guiding_distance_mean},
-          {"crown_to_guiding_surface_max_mm", record.guiding_distance_max},
-          {"steiner_points", record.steiner_points},
-          {"crown_triangles_from_dual", record.crown_triangles_direct},
-          {"crown_triangles_restored", record.crown_triangles_restored},
-          {"non_delaunay_edges_left", record.non_delaunay_edges_left},
-          {"root_sites", record.root_sites},
-          {"sites_without_cell", record.sites_without_cell},
-          {"triangles_filled", record.triangles_filled},
-          {"holes_filled", record.holes_filled},
-          {"remeshing_operations", record.remeshing_operations},
-          {"border_sharpest_notch_degrees", record.sharpest_notch},
-          {"transition_vertices", record.transition_vertices},
-          {"transition_width_mm", record.transition_width_mm},
-          {"transition_largest_move_mm", record.transition_largest_move_mm}};
+  return {{"guiding_vertices", record.joining.guiding_vertices},
+          {"crown_to_guiding_surface_mean_mm", record.joining.guiding_distance_mean_mm},
+          {"crown_to_guiding_surface_max_mm", record.joining.guiding_distance_max_mm},
+          {"steiner_points", record.joining.steiner_points},
+          {"crown_triangles_from_dual", record.joining.crown_triangles_direct},
+          {"crown_triangles_restored", record.joining.crown_triangles_restored},
+          {"non_delaunay_edges_left", record.joining.non_delaunay_edges_left},
+          {"root_sites", record.joining.root_sites},
+          {"sites_without_cell", record.joining.sites_without_cell},
+          {"triangles_filled", record.joining.triangles_filled},
+          {"holes_filled", record.joining.holes_filled},
+          {"remeshing_operations", record.joining.remeshing_operations},
+          {"border_sharpest_notch_degrees", record.joining.sharpest_notch_degrees},
+          {"transition_vertices", record.joining.transition_vertices},
+          {"transition_width_mm", record.joining.transition_width_mm},
+          {"transition_largest_move_mm", record.joining.transition_largest_move_mm}};
 }
 
 Json new_triangles_json(const NewTriangleFigures& figures) {

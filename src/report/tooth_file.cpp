@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "rhizodont/tooth_file.hpp"
+#include "teeth/fdi.hpp"
 
 #include <algorithm>
 #include <array>
@@ -105,18 +106,15 @@ MeshFile tooth_file(const CompletedTooth& tooth, const MeshFile& crown) {
     file.comments.push_back("unit: " + unit_in_words(tooth.record.millimetres_per_unit));
   const Colours colours = colours_of(crown);
   for (const auto& [name, of_crown] : colours)
-    file.vertex_attributes[name] = carried(of_crown, tooth.record.kept_vertices, tooth.mesh.vertices.size());
+    file.vertex_attributes[name] = carried(of_crown, tooth.record.crown.kept_vertices, tooth.mesh.vertices.size());
   if (!colours.empty()) file.comments.emplace_back("colours: of the scan; new vertices have their mean");
   return file;
 }
 
 std::optional<int> fdi_in_name(const std::filesystem::path& file) {
   std::set<int> found;
-  for (const std::string& number : numbers_in(file.stem().string())) {
-    if (number.size() != 2) continue;
-    const int quadrant = number[0] - '0', place = number[1] - '0';
-    if (quadrant >= 1 && quadrant <= 4 && place >= 1 && place <= 8) found.insert(10 * quadrant + place);
-  }
+  for (const std::string& number : numbers_in(file.stem().string()))
+    if (const auto fdi = read_fdi(number); fdi && is_permanent_tooth(*fdi)) found.insert(*fdi);
   return found.size() == 1 ? std::optional(*found.begin()) : std::nullopt;
 }
 
@@ -140,8 +138,8 @@ void refer_to_file(CompletionRecord& record, const MeshFile& crown, const std::f
   record.warnings.insert(record.warnings.begin(), notes.begin(), notes.end());
   if (crown.file_vertices.empty()) return;
   const auto renumber = [&](int& v) { v = crown.file_vertices[static_cast<std::size_t>(v)]; };
-  for (int& v : record.kept_vertices) renumber(v);
-  for (DroppedCrownVertex& dropped : record.dropped_vertices) renumber(dropped.vertex);
+  for (int& v : record.crown.kept_vertices) renumber(v);
+  for (DroppedCrownVertex& dropped : record.crown.dropped_vertices) renumber(dropped.vertex);
   for (MissedPlace& place : record.missed_places)
     for (int& v : place.crown_vertices) renumber(v);
   for (RepairStep& step : record.repairs)

@@ -7,28 +7,12 @@
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 namespace rhizodont {
-bool lies_on_border(const TriangleMesh& crown, const CrownBorder& border, const ClosestPoint& closest) {
-  const Triangle& t = crown.triangles[static_cast<std::size_t>(closest.triangle)];
-  const double tolerance = 1e-7 * border.mean_edge;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto a = static_cast<std::size_t>(t[i]);
-    const Point& pa = crown.vertices[a];
-    if (border.is_vertex[a] && (closest.point - pa).norm() <= tolerance) return true;
-    if (!border.is_edge[static_cast<std::size_t>(closest.triangle)][i]) continue;
-    const Eigen::Vector3d along = crown.vertices[static_cast<std::size_t>(t[(i + 1) % 3])] - pa;
-    if ((closest.point - pa).cross(along).norm() <= tolerance * along.norm()) return true;
-  }
-  return false;
-}
-
 namespace {
 
 /// Smallest angle in degrees between consecutive border edges where the crown takes up more than half a turn.
@@ -76,22 +60,6 @@ CrownBorder find_crown_border(const TriangleMesh& crown) {
   border.mean_edge /= static_cast<double>(border.half_edges.size());
   border.sharpest_notch = sharpest_notch(crown, border);
   return border;
-}
-
-CrownDistances crown_distances(const TriangleMesh& guiding_surface, const TriangleMesh& crown,
-                               const CrownBorder& border) {
-  const ClosestPointIndex index(crown);
-  const std::size_t n = guiding_surface.vertices.size();
-  CrownDistances result;
-  result.distance.resize(n);
-  std::vector<char> on_border(n);
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t v) {
-    const ClosestPoint closest = index.closest(guiding_surface.vertices[v]);
-    result.distance[v] = closest.distance;
-    on_border[v] = lies_on_border(crown, border, closest) ? 1 : 0;
-  });
-  result.closest_on_border.assign(on_border.begin(), on_border.end());
-  return result;
 }
 
 }  // namespace rhizodont

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "mesh/closest_point.hpp"
 #include "rhizodont/mesh.hpp"
 
 #include <array>
@@ -23,18 +22,5 @@ struct CrownBorder {
 
 /// Throws InputError for a closed crown.
 CrownBorder find_crown_border(const TriangleMesh& crown);
-
-/// Whether the closest point of the crown, as found by `ClosestPointIndex`, lies on its border.
-bool lies_on_border(const TriangleMesh& crown, const CrownBorder& border, const ClosestPoint& closest);
-
-/// Where each vertex of the guiding surface lies beside the crown.
-struct CrownDistances {
-  std::vector<double> distance;         ///< mm, >= 0, from the crown
-  std::vector<bool> closest_on_border;  ///< the crown's closest point lies on its border
-};
-
-/// Precondition: `border` is that of `crown`. Throws what `ClosestPointIndex` throws.
-CrownDistances crown_distances(const TriangleMesh& guiding_surface, const TriangleMesh& crown,
-                               const CrownBorder& border);
 
 }  // namespace rhizodont

@@ -7,12 +7,32 @@
 #include <string>
 
 namespace rhizodont {
+namespace {
+
+bool lies_within(int fdi, int first_quadrant, int last_quadrant, int places) {
+  return fdi >= 0 && fdi / 10 >= first_quadrant && fdi / 10 <= last_quadrant && fdi % 10 >= 1 && fdi % 10 <= places;
+}
+
+}  // namespace
+
+bool is_permanent_tooth(int fdi) { return lies_within(fdi, 1, 4, 8); }
+
+bool is_milk_tooth(int fdi) { return lies_within(fdi, 5, 8, 5); }
+
+std::optional<int> read_fdi(std::string_view text) {
+  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+  if (text.size() != 2 || !is_digit(text[0]) || !is_digit(text[1])) return std::nullopt;
+  const int fdi = 10 * (text[0] - '0') + (text[1] - '0');
+  return is_permanent_tooth(fdi) || is_milk_tooth(fdi) ? std::optional(fdi) : std::nullopt;
+}
 
 int tooth_type_of_fdi(int fdi) {
-  const int quadrant = fdi / 10, position = fdi % 10;
-  if (fdi < 0 || quadrant < 1 || quadrant > 4 || position < 1 || position > 8)
+  if (is_milk_tooth(fdi))
+    throw UsageError(std::to_string(fdi) +
+                     " is a milk tooth: roots are known of permanent teeth alone, 11-18, 21-28, 31-38, 41-48.");
+  if (!is_permanent_tooth(fdi))
     throw UsageError(std::to_string(fdi) + " is not a permanent tooth: FDI numbers are 11-18, 21-28, 31-38, 41-48.");
-  return (quadrant > 2 ? 8 : 0) + position - 1;
+  return (fdi / 10 > 2 ? 8 : 0) + fdi % 10 - 1;
 }
 
 bool is_right_side(int fdi) {

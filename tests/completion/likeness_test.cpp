@@ -6,6 +6,8 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/frame.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -33,8 +35,10 @@ const LikenessModel& shipped() {
 
 TriangleMesh sample(const std::string& name) { return load_mesh(root / "samples" / name).mesh; }
 
+Likeness likeness_of(const TriangleMesh& crown) { return likeness(crown, growth_axis(crown), shipped().classifier); }
+
 TEST(Likeness, ProbabilitiesSumToOneAndLeadsStartAtNone) {
-  const Likeness judged = likeness(sample("crown_34.ply"), shipped().classifier);
+  const Likeness judged = likeness_of(sample("crown_34.ply"));
   double sum = 0, least = 1e9;
   for (std::size_t tooth = 0; tooth < tooth_count; ++tooth) {
     sum += std::exp(judged.log_probability[tooth]);
@@ -47,10 +51,10 @@ TEST(Likeness, ProbabilitiesSumToOneAndLeadsStartAtNone) {
 
 TEST(Likeness, DoesNotDependOnWhereTheCrownIs) {
   TriangleMesh crown = sample("crown_36.stl");
-  const Likeness before = likeness(crown, shipped().classifier);
+  const Likeness before = likeness_of(crown);
   const Eigen::AngleAxisd turn(1.1, Eigen::Vector3d(1, 2, -1).normalized());
   for (Point& p : crown.vertices) p = turn * p + Point(30, -8, 5);
-  const Likeness after = likeness(crown, shipped().classifier);
+  const Likeness after = likeness_of(crown);
   // Another direction to begin with: columns fall elsewhere.
   EXPECT_EQ(
       std::max_element(before.log_probability.begin(), before.log_probability.end()) - before.log_probability.begin(),
@@ -127,7 +131,8 @@ TEST(Likeness, BoundsGoThroughAFile) {
 
 TEST(MeanCrownAgreement, TheToothThatItIsAgreesBest) {
   const TriangleMesh crown = sample("crown_36.stl");
-  const auto agreement = mean_crown_agreement(crown, atlas(), {tooth_of_fdi(36), tooth_of_fdi(11), tooth_of_fdi(36)});
+  const auto agreement =
+      mean_crown_agreement(prepare_crown(crown), atlas(), {tooth_of_fdi(36), tooth_of_fdi(11), tooth_of_fdi(36)});
   ASSERT_EQ(agreement.size(), 3U);
   EXPECT_LT(agreement[0].distance_mm, 1);
   EXPECT_GT(agreement[0].seen, 0.8);
@@ -139,17 +144,18 @@ TEST(MeanCrownAgreement, TheToothThatItIsAgreesBest) {
 TEST(MeanCrownAgreement, IsTheSameForAnyNumberOfThreadsAndAnyPlace) {
   TriangleMesh crown = sample("crown_34.ply");
   const std::vector<std::size_t> teeth{tooth_of_fdi(34), tooth_of_fdi(45), tooth_of_fdi(21)};
-  const auto many = mean_crown_agreement(crown, atlas(), teeth);
+  const auto many = mean_crown_agreement(prepare_crown(crown), atlas(), teeth);
   {
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    const auto single = mean_crown_agreement(crown, atlas(), teeth);
+    const auto single = mean_crown_agreement(prepare_crown(crown), atlas(), teeth);
     for (std::size_t i = 0; i < many.size(); ++i) {
       EXPECT_EQ(many[i].distance_mm, single[i].distance_mm);
       EXPECT_EQ(many[i].seen, single[i].seen);
     }
   }
   for (Point& p : crown.vertices) p = Point(p.y(), p.z(), p.x()) + Point(30, -8, 5);
-  EXPECT_NEAR(mean_crown_agreement(crown, atlas(), teeth).front().distance_mm, many.front().distance_mm, 0.05);
+  EXPECT_NEAR(mean_crown_agreement(prepare_crown(crown), atlas(), teeth).front().distance_mm, many.front().distance_mm,
+              0.05);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "rhizodont/io.hpp"
 #include "teeth/fdi.hpp"
 #include "teeth/frame.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -66,7 +67,7 @@ double angle_between(const CanonicalFrame& a, const TriangleMesh& mesh_a, const 
 TEST(CanonicalFrameOfCrowns, axisAndCentreAreTheCrownsOwn) {
   for (const Sample& sample : samples) {
     const TriangleMesh crown = sample_crown(sample);
-    const CrownFrame found = canonical_frame(crown, sample.fdi, mean_of(sample.fdi));
+    const CrownFrame found = canonical_frame(prepare_crown(crown), sample.fdi, mean_of(sample.fdi));
     EXPECT_LT((found.frame.direction_to_canonical(growth_axis(crown)) - Eigen::Vector3d::UnitZ()).norm(), 1e-12);
     EXPECT_LT((found.frame.centre - area_centroid(crown)).norm(), 1e-12);
     EXPECT_EQ(found.frame.mirrored, is_right_side(sample.fdi));
@@ -78,13 +79,13 @@ TEST(CanonicalFrameOfCrowns, axisAndCentreAreTheCrownsOwn) {
 TEST(CanonicalFrameOfCrowns, poseInTheScanDoesNotMatter) {
   for (const Sample& sample : samples) {
     const TriangleMesh crown = sample_crown(sample);
-    const CanonicalFrame first = canonical_frame(crown, sample.fdi, mean_of(sample.fdi)).frame;
+    const CanonicalFrame first = canonical_frame(prepare_crown(crown), sample.fdi, mean_of(sample.fdi)).frame;
     for (int k = 1; k <= 4; ++k) {
       const Eigen::Matrix3d turn =
           Eigen::AngleAxisd(1.5 * k, Eigen::Vector3d(std::sin(k), std::cos(2 * k), 0.3).normalized())
               .toRotationMatrix();
       const TriangleMesh moved = turned(crown, turn, Point(40 * k, -20, 11));
-      const CanonicalFrame second = canonical_frame(moved, sample.fdi, mean_of(sample.fdi)).frame;
+      const CanonicalFrame second = canonical_frame(prepare_crown(moved), sample.fdi, mean_of(sample.fdi)).frame;
       EXPECT_LT(std::abs(angle_between(first, crown, second, moved)), 0.06) << sample.fdi << " turn " << k;
     }
   }
@@ -94,8 +95,8 @@ TEST(CanonicalFrameOfCrowns, mirrorImageIsTheOtherSidesTooth) {
   for (const Sample& sample : samples) {
     const TriangleMesh crown = sample_crown(sample), image = mirrored(crown);
     const int other = fdi_of_type(tooth_type_of_fdi(sample.fdi), !is_right_side(sample.fdi));
-    const CanonicalFrame first = canonical_frame(crown, sample.fdi, mean_of(sample.fdi)).frame;
-    const CanonicalFrame second = canonical_frame(image, other, mean_of(other)).frame;
+    const CanonicalFrame first = canonical_frame(prepare_crown(crown), sample.fdi, mean_of(sample.fdi)).frame;
+    const CanonicalFrame second = canonical_frame(prepare_crown(image), other, mean_of(other)).frame;
     EXPECT_LT(std::abs(angle_between(first, crown, second, image)), 0.06) << sample.fdi;
   }
 }
@@ -121,15 +122,16 @@ TEST(CanonicalFrameOfCrowns, axisOfTheFormStaysWhereTheBorderLeans) {
   double form = 0, border = 0, image = 0;  // sums over crowns and cuts
   for (const Sample& sample : samples) {
     const TriangleMesh crown = sample_crown(sample);
-    const CrownFrame whole = canonical_frame(crown, sample.fdi, mean_of(sample.fdi));
+    const CrownFrame whole = canonical_frame(prepare_crown(crown), sample.fdi, mean_of(sample.fdi));
     const int other = fdi_of_type(tooth_type_of_fdi(sample.fdi), !is_right_side(sample.fdi));
     for (const int along : {0, 1}) {
       for (const double lean : {-0.2, 0.2}) {
         const TriangleMesh part = cut(crown, whole.frame, 5.2, along, lean);
-        const CrownFrame found = canonical_frame(part, sample.fdi, mean_of(sample.fdi));
+        const CrownFrame found = canonical_frame(prepare_crown(part), sample.fdi, mean_of(sample.fdi));
         form += std::acos(axis(found).dot(axis(whole)));
         border += std::acos(growth_axis(part).dot(growth_axis(crown)));
-        image += (canonical_frame(mirrored(part), other, mean_of(other)).form_axis - found.form_axis).norm();
+        image +=
+            (canonical_frame(prepare_crown(mirrored(part)), other, mean_of(other)).form_axis - found.form_axis).norm();
         // A cut that rises to one side turns the border's axis away from there, so the form's axis is on that side.
         EXPECT_GT(lean * (found.form_axis - whole.form_axis)[along], 0) << sample.fdi << " along " << along;
       }
@@ -142,9 +144,9 @@ TEST(CanonicalFrameOfCrowns, axisOfTheFormStaysWhereTheBorderLeans) {
 
 TEST(CanonicalFrameOfCrowns, isTheSameForAnyNumberOfThreads) {
   const TriangleMesh crown = sample_crown(samples[3]);
-  const TypeGuess many = guess_fdi_type(crown, atlas());
+  const TypeGuess many = guess_fdi_type(prepare_crown(crown), atlas());
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const TypeGuess single = guess_fdi_type(crown, atlas());
+  const TypeGuess single = guess_fdi_type(prepare_crown(crown), atlas());
   EXPECT_EQ(many.fdi, single.fdi);
   EXPECT_EQ(many.residuals_mm, single.residuals_mm);
   EXPECT_EQ(many.frame.frame.rotation, single.frame.frame.rotation);
@@ -152,7 +154,7 @@ TEST(CanonicalFrameOfCrowns, isTheSameForAnyNumberOfThreads) {
 
 TEST(GuessedType, findsJawAndClassOfTheSamples) {
   for (const Sample& sample : samples) {
-    const TypeGuess guess = guess_fdi_type(sample_crown(sample), atlas());
+    const TypeGuess guess = guess_fdi_type(prepare_crown(sample_crown(sample)), atlas());
     // Neighbours of one class are alike; a molar is not taken for an incisor, nor an upper tooth for a lower one.
     const auto group = [](int fdi) { return fdi % 10 <= 2 ? 0 : fdi % 10 == 3 ? 1 : fdi % 10 <= 5 ? 2 : 3; };
     EXPECT_EQ(group(guess.fdi), group(sample.fdi)) << sample.fdi << " taken for " << guess.fdi;
@@ -178,13 +180,13 @@ TEST(MeanCrownFit, findsAxisAndSizeOfAKnownPose) {
 
 TEST(Registration, refusesWhatItCannotUse) {
   const TriangleMesh crown = sample_crown(samples[0]);
-  EXPECT_THROW(canonical_frame(crown, 19, mean_of(11)), UsageError);
-  EXPECT_THROW(canonical_frame(TriangleMesh{}, 11, mean_of(11)), InputError);
-  EXPECT_THROW(canonical_frame(crown, 11, MeanCrown{}), UsageError);
-  EXPECT_THROW(guess_fdi_type(crown, Atlas{}), UsageError);
+  EXPECT_THROW(canonical_frame(prepare_crown(crown), 19, mean_of(11)), UsageError);
+  EXPECT_THROW(canonical_frame(prepare_crown(TriangleMesh{}), 11, mean_of(11)), InputError);
+  EXPECT_THROW(canonical_frame(prepare_crown(crown), 11, MeanCrown{}), UsageError);
+  EXPECT_THROW(guess_fdi_type(prepare_crown(crown), Atlas{}), UsageError);
   RegistrationOptions options;
   options.trim = 0.1;
-  EXPECT_THROW(canonical_frame(crown, 11, mean_of(11), options), UsageError);
+  EXPECT_THROW(canonical_frame(prepare_crown(crown), 11, mean_of(11), options), UsageError);
   EXPECT_THROW(fit_mean_crown({}, mean_of(11), false, true), InputError);
   const SurfaceSamples surface = sample_surface(crown, 100, 3);
   EXPECT_THROW(fit_mean_crown({surface.points, surface.normals}, mean_of(11), false, false, Eigen::Vector3d(0, 0, 2)),

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "rhizodont/error.hpp"
+#include "teeth/prepared_crown.hpp"
 
 namespace rhizodont {
 namespace {
@@ -33,7 +34,7 @@ TEST(Uncertainty, NoneOnTheCrownAndTheNetworksFarFromIt) {
   tooth.vertices.emplace_back(0, 0, -0.1);
   tooth.vertices.emplace_back(0, 0, -5);
   tooth.vertices.emplace_back(0, 0, -9.9);
-  const auto u = expected_distances(tooth, crown, column(), 2.0);
+  const auto u = expected_distances(tooth, prepare_crown(crown), column(), 2.0);
   ASSERT_EQ(u.size(), 6U);
   for (int v = 0; v < 3; ++v) EXPECT_EQ(u[static_cast<std::size_t>(v)], 0);
   EXPECT_GT(u[3], 0);

@@ -14,6 +14,6 @@ int main(int argc, char** argv) {
   const rhizodont::TriangleMesh crown = rhizodont::load_mesh(argv[1]).mesh;
   const auto models = rhizodont::CompletionModels::load(rhizodont::default_models_folder());
   const rhizodont::CompletedTooth tooth = rhizodont::complete_tooth(crown, models);
-  std::printf("root %.2f mm\n", tooth.record.root_length_mm);
+  std::printf("root %.2f mm\n", tooth.record.root.length_mm);
   return rhizodont::check(crown, tooth.mesh).holds() ? 0 : 4;
 }

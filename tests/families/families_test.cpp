@@ -13,6 +13,7 @@
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
@@ -331,7 +332,7 @@ TEST_F(Families, axisOfTheFormIsWhatLayingTheMeanCrownFinds) {
     random.index(tooth_type_count);
     const SyntheticTooth tooth = generate_tooth(families, options.type, random.bits());
     const TriangleMesh crown = draw_cropped_crown(tooth, 0, 0, random).mesh;
-    const CrownFrame found = canonical_frame(crown, 36, atlas.types[13]);
+    const CrownFrame found = canonical_frame(prepare_crown(crown), 36, atlas.types[13]);
     const CompletionSample sample = make_completion_sample(families, seed, options);
     ASSERT_LT((found.frame.centre - sample.frame.centre).norm(), 1e-9);
     const Eigen::Matrix3d turn = found.frame.rotation * sample.frame.rotation.transpose();
@@ -384,7 +385,7 @@ void expect_registration(const ToothFamilies& families) {
               .toRotationMatrix();
       for (Point& p : crown.vertices) p = turn * p + Point(20, -5, 7);
       const CrownFrame found =
-          canonical_frame(crown, fdi_of_type(type, false), atlas.types[static_cast<std::size_t>(type)]);
+          canonical_frame(prepare_crown(crown), fdi_of_type(type, false), atlas.types[static_cast<std::size_t>(type)]);
       const Eigen::Vector3d a = found.frame.direction_to_canonical(turn * Eigen::Vector3d::UnitX());
       const Eigen::Vector3d b = truth.direction_to_canonical(Eigen::Vector3d::UnitX());
       const double error = std::atan2(b.x() * a.y() - b.y() * a.x(), b.x() * a.x() + b.y() * a.y());

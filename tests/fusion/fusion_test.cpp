@@ -10,6 +10,7 @@
 #include "mesh/test_meshes.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <gtest/gtest.h>
 
@@ -38,11 +39,11 @@ TriangleMesh turned(TriangleMesh mesh) {
   return mesh;
 }
 
-RestoredTooth complete(const TriangleMesh& crown, const TriangleMesh& surface, const Eigen::Vector3d& axis) {
-  return fuse_crown_and_root(crown, surface, axis).tooth;
+JoinedTooth complete(const TriangleMesh& crown, const TriangleMesh& surface, const Eigen::Vector3d& axis) {
+  return fuse_crown_and_root(prepare_crown(crown), surface, axis).tooth;
 }
 
-void expect_promises(const TriangleMesh& crown, const RestoredTooth& tooth) {
+void expect_promises(const TriangleMesh& crown, const JoinedTooth& tooth) {
   ASSERT_GE(tooth.mesh.vertices.size(), crown.vertices.size());
   ASSERT_GE(tooth.mesh.triangles.size(), crown.triangles.size());
   for (std::size_t v = 0; v < crown.vertices.size(); ++v) ASSERT_EQ(tooth.mesh.vertices[v], crown.vertices[v]) << v;
@@ -60,7 +61,7 @@ void expect_promises(const TriangleMesh& crown, const RestoredTooth& tooth) {
 TEST(Fusion, SphereCapBecomesClosedAndKeepsItsTriangles) {
   const TriangleMesh crown = part(test::sphere(4, 5), [](const Point& p) { return p.z() > 0.3; });
   const TriangleMesh surface = turned(test::sphere(5, 5));
-  const RestoredTooth tooth = complete(crown, surface, Eigen::Vector3d::UnitZ());
+  const JoinedTooth tooth = complete(crown, surface, Eigen::Vector3d::UnitZ());
   expect_promises(crown, tooth);
   EXPECT_NEAR(volume(tooth.mesh), 4.0 / 3 * M_PI * 125, 10);
 }
@@ -74,10 +75,10 @@ TEST(Fusion, CrownWithAnInnerHoleIsFilled) {
 
 TEST(Fusion, ASlitIsFilledAndNotTakenForTheBase) {
   const TriangleMesh surface = turned(test::sphere(5, 5));
-  const RestoredTooth whole = complete(test::dome(4, 5), surface, Eigen::Vector3d::UnitZ());
+  const JoinedTooth whole = complete(test::dome(4, 5), surface, Eigen::Vector3d::UnitZ());
   for (const double gap : {1e-3, 0.02}) {
     const TriangleMesh crown = test::slit_dome(4, 5, gap);
-    const RestoredTooth tooth = complete(crown, surface, Eigen::Vector3d::UnitZ());
+    const JoinedTooth tooth = complete(crown, surface, Eigen::Vector3d::UnitZ());
     expect_promises(crown, tooth);
     EXPECT_NEAR(volume(tooth.mesh), 4.0 / 3 * M_PI * 125, 10);
     // Mending comes to an end in a slit.
@@ -139,7 +140,7 @@ FusedTooth fuse_with_folds(double depth, const FuseOptions& options) {
   TriangleMesh surface = turned(test::sphere(5, 5));
   for (Point& p : surface.vertices)
     p *= 1 + depth / 5 * std::exp(-std::pow((p.z() - 0.3) / 0.6, 2)) * std::sin(15 * std::atan2(p.y(), p.x()));
-  const FusedTooth fused = fuse_crown_and_root(crown, surface, Eigen::Vector3d::UnitZ(), options);
+  const FusedTooth fused = fuse_crown_and_root(prepare_crown(crown), surface, Eigen::Vector3d::UnitZ(), options);
   expect_promises(crown, fused.tooth);
   return fused;
 }
@@ -206,7 +207,7 @@ TEST(Fusion, ARootThatIsClosedByItselfIsNotJoined) {
 
 TEST(Fusion, ClosedCrownIsRefused) {
   const TriangleMesh ball = test::sphere(3, 5);
-  EXPECT_THROW(fuse_crown_and_root(ball, ball, Eigen::Vector3d::UnitZ()), InputError);
+  EXPECT_THROW(fuse_crown_and_root(prepare_crown(ball), ball, Eigen::Vector3d::UnitZ()), InputError);
 }
 
 TEST(Fusion, ValidationCrownsOnTheirOwnTeeth) {
@@ -219,7 +220,7 @@ TEST(Fusion, ValidationCrownsOnTheirOwnTeeth) {
     for (std::size_t v = 0; v < surface.vertices.size(); ++v)
       surface.vertices[v] += 0.01 * Eigen::Vector3d(std::sin(3.0 * v), std::sin(5.0 * v), std::sin(7.0 * v));
     SCOPED_TRACE(fdi);
-    const RestoredTooth tooth = complete(crown, surface, area_vector(crown).normalized());
+    const JoinedTooth tooth = complete(crown, surface, area_vector(crown).normalized());
     expect_promises(crown, tooth);
     EXPECT_LT(tooth.triangles_brought_back, 0.01 * tooth.crown_triangles);
   }

@@ -10,6 +10,7 @@
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/test_meshes.hpp"
 #include "rhizodont/check.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,13 +44,14 @@ TEST(SurfaceWalk, FindsTheClosestPointOfAConvexSurfaceFromAnywhere) {
 }
 
 struct SitesOnSphere {
-  TriangleMesh crown = cap(4, 5, 0.5);
+  PreparedCrown prepared = prepare_crown(cap(4, 5, 0.5));
+  const TriangleMesh& crown = prepared.mesh;
   TriangleMesh surface = test::sphere(5, 5);
-  CrownBorder border = find_crown_border(crown);
+  const CrownBorder& border = prepared.border;
   EdgeLengths lengths{crown, border, 0.3, 1.2, 0.15};
   SurfaceWalk walk{surface};
   std::vector<bool> is_root =
-      separate_crown_and_root(surface, crown_distances(surface, crown, border), Eigen::Vector3d::UnitZ());
+      separate_crown_and_root(surface, crown_distances(surface, prepared), Eigen::Vector3d::UnitZ());
   std::vector<Point> sites = root_sites(walk, is_root, crown, border, lengths);
 };
 
@@ -100,7 +102,7 @@ TEST(CrownBorder, NotchOpenToTheRoot) {
 
 TEST(Root, TrianglesKeepPromiseThree) {
   const TriangleMesh crown = cap(4, 5, 0.5);
-  const FusedTooth fused = fuse_crown_and_root(crown, test::sphere(5, 5), Eigen::Vector3d::UnitZ());
+  const FusedTooth fused = fuse_crown_and_root(prepare_crown(crown), test::sphere(5, 5), Eigen::Vector3d::UnitZ());
   const CheckReport report = check(crown, fused.tooth.mesh);
   EXPECT_TRUE(report.holds());
   EXPECT_TRUE(report.new_triangles.holds());
@@ -118,7 +120,8 @@ TEST(Root, MendingEndsWithItsBudget) {
   FuseOptions options;
   options.other_growths.clear();
   const auto mended = [&] {
-    return fuse_crown_and_root(crown, test::sphere(5, 5), Eigen::Vector3d::UnitZ(), options).remeshing.mended;
+    return fuse_crown_and_root(prepare_crown(crown), test::sphere(5, 5), Eigen::Vector3d::UnitZ(), options)
+        .remeshing.mended;
   };
   EXPECT_GT(mended(), 0);
   options.remesh.mending_places = 0;
@@ -135,7 +138,7 @@ TEST(Root, ShortBorderEdgesDoNotSpoilIt) {
       Point& p = crown.vertices[static_cast<std::size_t>(edges[e].first)];
       p += (1 - share) * (crown.vertices[static_cast<std::size_t>(edges[e].second)] - p);
     }
-    const FusedTooth fused = fuse_crown_and_root(crown, test::sphere(5, 5), Eigen::Vector3d::UnitZ());
+    const FusedTooth fused = fuse_crown_and_root(prepare_crown(crown), test::sphere(5, 5), Eigen::Vector3d::UnitZ());
     const CheckReport report = check(crown, fused.tooth.mesh);
     EXPECT_TRUE(report.holds());
     EXPECT_GT(report.new_triangles.at_border->theta_min, 5);

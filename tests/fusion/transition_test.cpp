@@ -6,6 +6,7 @@
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/test_meshes.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,9 +17,9 @@ namespace rhizodont {
 namespace {
 
 /// A strip of a plane: the crown is the part y >= 0, its vertices and triangles come first.
-RestoredTooth plane(double bump) {
+JoinedTooth plane(double bump) {
   constexpr int width = 12, depth = 16, crown_rows = 6;
-  RestoredTooth tooth;
+  JoinedTooth tooth;
   for (int row = 0; row < depth; ++row)
     for (int x = 0; x < width; ++x)
       tooth.mesh.vertices.emplace_back(0.3 * x + 0.15 * (row % 2), 0.26 * (crown_rows - 1 - row),
@@ -41,7 +42,7 @@ RestoredTooth plane(double bump) {
 }
 
 TEST(Transition, PlaneStaysAPlane) {
-  RestoredTooth tooth = plane(0);
+  JoinedTooth tooth = plane(0);
   TransitionOptions options;
   options.width = 1;
   const Transition done = smooth_transition(tooth, options);
@@ -51,8 +52,8 @@ TEST(Transition, PlaneStaysAPlane) {
 }
 
 TEST(Transition, BumpInAPlaneIsHealedAndTheCrownStays) {
-  const RestoredTooth before = plane(0.2);
-  RestoredTooth tooth = before;
+  const JoinedTooth before = plane(0.2);
+  JoinedTooth tooth = before;
   TransitionOptions options;
   options.width = 1;
   const Transition done = smooth_transition(tooth, options);
@@ -64,7 +65,7 @@ TEST(Transition, BumpInAPlaneIsHealedAndTheCrownStays) {
 }
 
 TEST(Transition, WidthFollowsTheGap) {
-  RestoredTooth tooth = plane(0);
+  JoinedTooth tooth = plane(0);
   TransitionOptions options;
   const double without_gap = smooth_transition(tooth, options).width;
   EXPECT_NEAR(without_gap, 0.9, 0.1);  // three rows of edges of 0.3 mm
@@ -75,7 +76,7 @@ TEST(Transition, WidthFollowsTheGap) {
 }
 
 /// Angles in degrees between the normals of the two triangles at each edge of the crown's border.
-std::vector<double> bends_at_border(const RestoredTooth& tooth) {
+std::vector<double> bends_at_border(const JoinedTooth& tooth) {
   const TriangleAdjacency adjacency = triangle_adjacency(tooth.mesh);
   std::vector<double> bends;
   for (int t = 0; t < tooth.crown_triangles; ++t)
@@ -99,10 +100,11 @@ TEST(Transition, SlopeContinuesOverTheBorderOfASphere) {
   const TriangleMesh crown = submesh(sphere, mask).mesh;
   FuseOptions options;
   options.transition.width = 0;
-  const auto before =
-      bends_at_border(fuse_crown_and_root(crown, test::sphere(5, 5.15), Eigen::Vector3d::UnitZ(), options).tooth);
+  const auto before = bends_at_border(
+      fuse_crown_and_root(prepare_crown(crown), test::sphere(5, 5.15), Eigen::Vector3d::UnitZ(), options).tooth);
   options.transition.width.reset();
-  const FusedTooth fused = fuse_crown_and_root(crown, test::sphere(5, 5.15), Eigen::Vector3d::UnitZ(), options);
+  const FusedTooth fused =
+      fuse_crown_and_root(prepare_crown(crown), test::sphere(5, 5.15), Eigen::Vector3d::UnitZ(), options);
   const auto after = bends_at_border(fused.tooth);
   EXPECT_EQ(fused.transition.applied, 1);
   // Neighbouring triangles of a sphere of this size and fineness bend by up to 5 degrees.

@@ -9,6 +9,7 @@
 #include "mesh/self_intersection.hpp"
 #include "mesh/test_meshes.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,7 +44,7 @@ TEST(CrownFit, BringsACoarseBallWithinTheToleranceOfTheCrown) {
   const TriangleMesh before = surface;
   CrownFitOptions options;
   options.tolerance = 0.02;
-  const CrownFit fit = fit_to_crown(surface, crown, options);
+  const CrownFit fit = fit_to_crown(surface, prepare_crown(crown), options);
   EXPECT_FALSE(fit.undone);
   EXPECT_GT(fit.moved_vertices, 0);
   EXPECT_EQ(static_cast<std::size_t>(fit.added_vertices), surface.vertices.size() - before.vertices.size());
@@ -62,7 +63,7 @@ TEST(CrownFit, BringsACoarseBallWithinTheToleranceOfTheCrown) {
 TEST(CrownFit, LeavesASurfaceThatFitsAlone) {
   TriangleMesh surface = test::sphere(5, radius);
   const TriangleMesh before = surface;
-  const CrownFit fit = fit_to_crown(surface, test::dome(5, radius));
+  const CrownFit fit = fit_to_crown(surface, prepare_crown(test::dome(5, radius)));
   EXPECT_EQ(fit.added_vertices, 0);
   for (std::size_t v = 0; v < before.vertices.size(); ++v)
     EXPECT_LT((surface.vertices[v] - before.vertices[v]).norm(), 0.02);
@@ -73,7 +74,7 @@ TEST(CrownFit, DoesNotReachForACrownThatIsFarAway) {
   const TriangleMesh before = surface;
   CrownFitOptions options;
   options.most_rounds = 2;
-  fit_to_crown(surface, test::dome(4, radius), options);
+  fit_to_crown(surface, prepare_crown(test::dome(4, radius)), options);
   for (std::size_t v = 0; v < before.vertices.size(); ++v) EXPECT_EQ(before.vertices[v], surface.vertices[v]);
 }
 
@@ -105,7 +106,7 @@ TEST(CrownFit, TurnsAroundAPoleOfHundredsOfTriangles) {
   for (Point& p : crown.vertices) p.z() -= 0.1 * std::exp(-p.head<2>().squaredNorm());  // a dent at the pole
   CrownFitOptions options;
   options.tolerance = 0.01;
-  const CrownFit fit = fit_to_crown(surface, crown, options);
+  const CrownFit fit = fit_to_crown(surface, prepare_crown(crown), options);
   EXPECT_FALSE(fit.undone);
   EXPECT_TRUE(diagnose(surface).is_closed_solid());
   EXPECT_LT(farthest(surface, crown), 0.03);
@@ -113,7 +114,7 @@ TEST(CrownFit, TurnsAroundAPoleOfHundredsOfTriangles) {
 
 TEST(CrownFit, NeedsABorder) {
   TriangleMesh surface = test::sphere(2, radius);
-  EXPECT_THROW(fit_to_crown(surface, test::sphere(3, radius)), InputError);
+  EXPECT_THROW(fit_to_crown(surface, prepare_crown(test::sphere(3, radius))), InputError);
 }
 
 }  // namespace

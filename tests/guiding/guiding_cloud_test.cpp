@@ -7,6 +7,7 @@
 #include "mesh/sampling.hpp"
 #include "mesh/test_meshes.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <gtest/gtest.h>
 
@@ -39,7 +40,7 @@ double mean_distance_from_ball(const GuidingCloud& cloud) {
 
 TEST(GuidingCloud, PredictedPointsOverTheCrownAreLeftOut) {
   const TriangleMesh crown = upper_half();
-  const GuidingCloud cloud = assemble_guiding_cloud(crown, prediction(Eigen::Vector3d::Zero(), 0));
+  const GuidingCloud cloud = assemble_guiding_cloud(prepare_crown(crown), prediction(Eigen::Vector3d::Zero(), 0));
   EXPECT_NEAR(cloud.predicted_dropped, 1500, 150);
   for (std::size_t i = static_cast<std::size_t>(cloud.crown_samples); i < cloud.samples.points.size(); ++i)
     EXPECT_LT(cloud.samples.points[i].z(), 0);
@@ -53,14 +54,16 @@ TEST(GuidingCloud, APredictionThatIsOffIsMovedOntoTheCrown) {
   const Eigen::Vector3d shift(0.5, -0.3, 0.2);
   GuidingCloudOptions uncorrected;
   uncorrected.correction_reach = 1e-9;
-  const double before = mean_distance_from_ball(assemble_guiding_cloud(crown, prediction(shift, 0), uncorrected));
-  const GuidingCloud cloud = assemble_guiding_cloud(crown, prediction(shift, 0));
+  const double before =
+      mean_distance_from_ball(assemble_guiding_cloud(prepare_crown(crown), prediction(shift, 0), uncorrected));
+  const GuidingCloud cloud = assemble_guiding_cloud(prepare_crown(crown), prediction(shift, 0));
   EXPECT_LT(mean_distance_from_ball(cloud), 0.6 * before);
   EXPECT_NEAR(cloud.prediction_error, 0.3, 0.15);
 }
 
 TEST(GuidingCloud, NoiseIsSmoothedAndNormalsPointOutward) {
-  const GuidingCloud cloud = assemble_guiding_cloud(upper_half(), prediction(Eigen::Vector3d::Zero(), 0.15));
+  const GuidingCloud cloud =
+      assemble_guiding_cloud(prepare_crown(upper_half()), prediction(Eigen::Vector3d::Zero(), 0.15));
   EXPECT_LT(mean_distance_from_ball(cloud), 0.09) << "from 0.12";
   int outward = 0;
   const auto first = static_cast<std::size_t>(cloud.crown_samples);
@@ -72,7 +75,7 @@ TEST(GuidingCloud, NoiseIsSmoothedAndNormalsPointOutward) {
 TEST(GuidingCloud, NoRootIsAnError) {
   const TriangleMesh crown = upper_half();
   const SurfaceSamples samples = sample_surface(crown, 2000, 3);
-  EXPECT_THROW(assemble_guiding_cloud(crown, {samples.points, samples.normals}), NoResultError);
+  EXPECT_THROW(assemble_guiding_cloud(prepare_crown(crown), {samples.points, samples.normals}), NoResultError);
 }
 
 }  // namespace

@@ -28,8 +28,8 @@ namespace {
 using test::models;
 using test::source_folder;
 
-KeptCrown taken(const TriangleMesh& crown, const CompleteOptions& options, CompletionRecord& record) {
-  return take_crown(crown, models().content().atlas, models().content().skirt, options, record);
+TakenCrown taken(const TriangleMesh& crown, const CompleteOptions& options) {
+  return take_crown(crown, content_of(models())->atlas, content_of(models())->skirt, options);
 }
 
 /// A crown closed by a fan from one corner of its border, which is no plane: the fan meets the crown.
@@ -43,27 +43,24 @@ TEST(MadeCap, GoesBeforeItsCutsAreTakenOut) {
   for (const auto& [name, fdi] : {std::pair{"crown_11.stl", 11}, std::pair{"crown_34.ply", 34}}) {
     SCOPED_TRACE(name);
     const TriangleMesh closed = crown_with_cutting_cap(name);
-    CompletionRecord plain;
-    const KeptCrown as_it_is = taken(closed, test::for_tooth(fdi), plain);
+    const TakenCrown as_it_is = taken(closed, test::for_tooth(fdi));
     for (const bool skirt : {false, true}) {
       CompleteOptions options = test::for_tooth(fdi);
       options.repair = !skirt;
       if (skirt) options.skirt = 0.5;
-      CompletionRecord record;
-      const KeptCrown kept = taken(closed, options, record);
-      EXPECT_EQ(kept.old_vertices, as_it_is.old_vertices);
-      EXPECT_EQ(kept.old_triangles, as_it_is.old_triangles);
+      const auto [kept, record] = taken(closed, options);
+      EXPECT_EQ(kept.old_vertices, as_it_is.kept.old_vertices);
+      EXPECT_EQ(kept.old_triangles, as_it_is.kept.old_triangles);
       EXPECT_TRUE(record.cap_dropped);
       ASSERT_EQ(record.repairs.size(), 1U);
-      EXPECT_EQ(record.repairs.front().triangles, plain.repairs.front().triangles);
+      EXPECT_EQ(record.repairs.front().triangles, as_it_is.record.repairs.front().triangles);
     }
   }
 }
 
 TEST(MadeCap, IsKnownOnceTheTrianglesHangTogether) {
   TriangleMesh crown = crown_with_cutting_cap("crown_11.stl");
-  CompletionRecord plain;
-  const KeptCrown whole = taken(crown, test::for_tooth(11), plain);
+  const TakenCrown whole = taken(crown, test::for_tooth(11));
   // Turned over in places, one triangle twice, and a vertex that stands beside its twin.
   for (std::size_t t = 0; t < 300; ++t) std::swap(crown.triangles[t][1], crown.triangles[t][2]);
   crown.triangles.push_back(crown.triangles[1000]);
@@ -75,9 +72,9 @@ TEST(MadeCap, IsKnownOnceTheTrianglesHangTogether) {
   options.repair = true;
   options.e = 1;
   const CompletedTooth tooth = complete_tooth(crown, models(), options);
-  EXPECT_EQ(tooth.record.kept_vertices, whole.old_vertices);
-  EXPECT_TRUE(tooth.record.cap_dropped);
-  EXPECT_EQ(tooth.record.repairs.back().triangles, plain.repairs.front().triangles);
+  EXPECT_EQ(tooth.record.crown.kept_vertices, whole.kept.old_vertices);
+  EXPECT_TRUE(tooth.record.crown.cap_dropped);
+  EXPECT_EQ(tooth.record.repairs.back().triangles, whole.record.repairs.front().triangles);
   std::size_t turned = 0;
   for (const RepairStep& step : tooth.record.repairs)
     if (step.action == "triangle turned over") turned += step.triangles.size();

@@ -43,11 +43,11 @@ TriangleMesh sample(const std::string& name) { return load_mesh(source_folder / 
 void expect_crown_first(const TriangleMesh& crown, const CompletedTooth& tooth) {
   const CompletionRecord& record = tooth.record;
   std::vector<int> number(crown.vertices.size(), -1);
-  for (std::size_t i = 0; i < record.kept_vertices.size(); ++i) {
-    const Point& original = crown.vertices[static_cast<std::size_t>(record.kept_vertices[i])];
+  for (std::size_t i = 0; i < record.crown.kept_vertices.size(); ++i) {
+    const Point& original = crown.vertices[static_cast<std::size_t>(record.crown.kept_vertices[i])];
     ASSERT_EQ(std::memcmp(original.data(), tooth.mesh.vertices[i].data(), sizeof(double) * 3), 0) << i;
     ASSERT_EQ(tooth.source[i], VertexSource::scan);
-    number[static_cast<std::size_t>(record.kept_vertices[i])] = static_cast<int>(i);
+    number[static_cast<std::size_t>(record.crown.kept_vertices[i])] = static_cast<int>(i);
   }
   std::size_t next = 0;
   for (const Triangle& t : crown.triangles) {
@@ -57,7 +57,7 @@ void expect_crown_first(const TriangleMesh& crown, const CompletedTooth& tooth) 
     ASSERT_EQ(tooth.mesh.triangles[next], mapped) << next;
     ++next;
   }
-  EXPECT_EQ(static_cast<int>(next), record.kept_triangles);
+  EXPECT_EQ(static_cast<int>(next), record.crown.kept_triangles);
 }
 
 class SampleCrowns : public testing::TestWithParam<std::pair<const char*, int>> {};
@@ -73,11 +73,11 @@ TEST_P(SampleCrowns, BecomeWholeTeeth) {
   EXPECT_TRUE(report.holds());
   EXPECT_EQ(report.crown.kept_triangles, static_cast<std::int64_t>(crown.triangles.size()));
   EXPECT_TRUE(coordinates_fit_float(tooth.mesh));
-  EXPECT_GT(tooth.record.root_length_mm, 7);
-  EXPECT_LT(tooth.record.root_length_mm, 22);
-  EXPECT_GT(tooth.record.growth_axis.dot(area_vector(crown).normalized()), 0.999);
+  EXPECT_GT(tooth.record.root.length_mm, 7);
+  EXPECT_LT(tooth.record.root.length_mm, 22);
+  EXPECT_GT(tooth.record.frame.growth_axis.dot(area_vector(crown).normalized()), 0.999);
   EXPECT_EQ(std::count(tooth.source.begin(), tooth.source.end(), VertexSource::transition),
-            tooth.record.transition_vertices);
+            tooth.record.joining.transition_vertices);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SampleCrowns,
@@ -106,7 +106,7 @@ TEST(CompleteTooth, TheUnitOfTheInputIsThatOfTheOutput) {
   const CompletedTooth tooth = complete_tooth(crown, models(), options);
   expect_crown_first(crown, tooth);
   EXPECT_LT(bounding_box(tooth.mesh.vertices).sizes().maxCoeff(), 0.03);
-  EXPECT_GT(tooth.record.root_length_mm, 7) << "the report is in millimetres";
+  EXPECT_GT(tooth.record.root.length_mm, 7) << "the report is in millimetres";
 }
 
 TEST(CompleteTooth, FarFromTheOriginTheToothIsTheSame) {
@@ -118,8 +118,8 @@ TEST(CompleteTooth, FarFromTheOriginTheToothIsTheSame) {
     const CompletedTooth tooth = complete_tooth(moved, models(), for_tooth(34));
     expect_crown_first(moved, tooth);
     EXPECT_TRUE(check(moved, tooth.mesh).holds());
-    EXPECT_NEAR(tooth.record.root_length_mm, near.record.root_length_mm, 0.2) << away.transpose();
-    EXPECT_LT((tooth.record.frame_centre - near.record.frame_centre - away).norm(), 1e-2);
+    EXPECT_NEAR(tooth.record.root.length_mm, near.record.root.length_mm, 0.2) << away.transpose();
+    EXPECT_LT((tooth.record.frame.centre - near.record.frame.centre - away).norm(), 1e-2);
   }
 }
 
@@ -141,7 +141,7 @@ TEST(CompleteTooth, MicrometresFarFromTheOrigin) {
   options.millimetres_per_unit = 1e-3;
   const CompletedTooth tooth = complete_tooth(crown, models(), options);
   expect_crown_first(crown, tooth);
-  EXPECT_GT(tooth.record.root_length_mm, 7);
+  EXPECT_GT(tooth.record.root.length_mm, 7);
   EXPECT_GT(bounding_box(tooth.mesh.vertices).sizes().maxCoeff(), 1e4) << "in micrometres as the input";
 }
 
@@ -240,11 +240,11 @@ TEST(CompleteTooth, ARealCappedCrownIsOpenedAndCompleted) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real crowns at " << file;
   const TriangleMesh crown = load_mesh(file).mesh;
   const CompletedTooth tooth = complete_tooth(crown, models(), for_tooth(16));
-  EXPECT_TRUE(tooth.record.cap_dropped);
+  EXPECT_TRUE(tooth.record.crown.cap_dropped);
   expect_crown_first(crown, tooth);
   EXPECT_TRUE(check(crown, tooth.mesh).holds());
-  EXPECT_GT(tooth.record.kept_triangles, 0.55 * tooth.record.crown_triangles);
-  EXPECT_LT(tooth.record.growth_axis.y(), -0.9) << "upper teeth of this scan hang from above";
+  EXPECT_GT(tooth.record.crown.kept_triangles, 0.55 * tooth.record.crown.triangles);
+  EXPECT_LT(tooth.record.frame.growth_axis.y(), -0.9) << "upper teeth of this scan hang from above";
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "pipeline/models.hpp"
 #include "pipeline/product_models.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
@@ -40,7 +41,7 @@ TriangleMesh upright(TriangleMesh crown) {
 /// What is made of a crown; nothing where it is refused.
 std::optional<CrownLikeness> judged(const TriangleMesh& crown, std::optional<int> fdi) {
   try {
-    return judge_crown(crown, fdi, models().content().atlas, *models().content().likeness);
+    return judge_crown(prepare_crown(crown), fdi, content_of(models())->atlas, *content_of(models())->likeness);
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("look like"), std::string::npos) << error.what();
     return std::nullopt;
@@ -112,7 +113,7 @@ TEST(CrownLikeness, StandsInTheRecordOfATooth) {
   const CompletedTooth tooth = complete_tooth(sample("crown_34.ply"), models(), for_tooth(34));
   ASSERT_TRUE(tooth.record.likeness);
   EXPECT_EQ(tooth.record.likeness->said.fdi, 34);
-  EXPECT_EQ(tooth.record.root_source, RootSource::network);
+  EXPECT_EQ(tooth.record.root.source, RootSource::network);
 }
 
 }  // namespace

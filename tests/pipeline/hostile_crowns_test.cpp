@@ -38,13 +38,14 @@ void expect_promises(const TriangleMesh& crown, const CompletedTooth& tooth) {
   const CheckReport report = check(crown, tooth.mesh, exact);
   EXPECT_TRUE(report.holds()) << (report.failures.empty() ? "" : report.failures.front());
   EXPECT_TRUE(check(crown, tooth.mesh, allowing_for(tooth.record.repairs)).holds()) << "as a user checks it";
-  std::set<int> told(tooth.record.kept_vertices.begin(), tooth.record.kept_vertices.end());
-  for (const DroppedCrownVertex& d : tooth.record.dropped_vertices) EXPECT_TRUE(told.insert(d.vertex).second);
+  std::set<int> told(tooth.record.crown.kept_vertices.begin(), tooth.record.crown.kept_vertices.end());
+  for (const DroppedCrownVertex& d : tooth.record.crown.dropped_vertices) EXPECT_TRUE(told.insert(d.vertex).second);
   EXPECT_EQ(told.size(), crown.vertices.size());
   const CompletionRecord& record = tooth.record;
   for (const double number :
-       {record.root_length_mm, record.tooth_length_mm, record.guiding_distance_mean, record.guiding_distance_max,
-        record.type_residual_mm, record.growth_axis.sum(), report.solid.volume})
+       {record.root.length_mm, record.root.tooth_length_mm, record.joining.guiding_distance_mean_mm,
+        record.joining.guiding_distance_max_mm, record.frame.distance_to_mean_crown_mm, record.frame.growth_axis.sum(),
+        report.solid.volume})
     EXPECT_TRUE(std::isfinite(number));
   for (const Point& p : tooth.mesh.vertices) ASSERT_TRUE(p.allFinite());
 }

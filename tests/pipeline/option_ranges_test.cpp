@@ -31,7 +31,7 @@
 #include "skirt/skirt_border.hpp"
 #include "skirt/skirt_network.hpp"
 #include "skirt/spikes.hpp"
-#include "teeth/crown_border.hpp"
+#include "teeth/prepared_crown.hpp"
 #include "training/skirt_sample.hpp"
 
 #include <gtest/gtest.h>
@@ -82,6 +82,8 @@ class Faults {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+
+PreparedCrown dome() { return prepare_crown(test::dome(2, 5)); }
 
 void expect_each_refused_by_name(const std::vector<Fault>& faults) {
   ASSERT_FALSE(faults.empty());
@@ -165,7 +167,7 @@ TEST(OptionRanges, OfCapsAndSkirts) {
       .of("least_kept", &B::least_kept, {-0.1, 1.1});
   using N = SkirtNetworkOptions;
   Faults<N>(faults, [](const N& o) {
-    skirt_confidence({}, test::models().content().skirt.value(), o);
+    skirt_confidence({}, content_of(test::models())->skirt.value(), o);
   }).of("most_vertices", &N::most_vertices, {199});
   expect_each_refused_by_name(faults);
 }
@@ -211,7 +213,7 @@ TEST(OptionRanges, OfTheGuidingSurface) {
       .of("still", &P::still, {0.0})
       .set("degree", [](P& o) { o.indicator.degree = 3; });
   using C = GuidingCloudOptions;
-  Faults<C>(faults, [](const C& o) { assemble_guiding_cloud({}, {}, o); })
+  Faults<C>(faults, [](const C& o) { assemble_guiding_cloud(dome(), {}, o); })
       .of("crown_spacing", &C::crown_spacing, {0.0})
       .of("orientation_spacing", &C::orientation_spacing, {0.0})
       .of("crown_confidence", &C::crown_confidence, {0.0})
@@ -223,7 +225,7 @@ TEST(OptionRanges, OfTheGuidingSurface) {
   Faults<F>(faults,
             [](const F& o) {
               TriangleMesh empty;
-              fit_to_crown(empty, {}, o);
+              fit_to_crown(empty, dome(), o);
             })
       .of("tolerance", &F::tolerance, {0.0})
       .of("reach", &F::reach, {0.0})
@@ -259,7 +261,7 @@ TEST(OptionRanges, OfVoronoiDiagramsAndJoining) {
   using T = TransitionOptions;
   Faults<T>(faults,
             [](const T& o) {
-              RestoredTooth tooth;
+              JoinedTooth tooth;
               smooth_transition(tooth, o);
             })
       .set("width", [](T& o) { o.width = -0.1; })
@@ -272,7 +274,7 @@ TEST(OptionRanges, OfVoronoiDiagramsAndJoining) {
       .of("border_angle", &T::border_angle, {-0.1, 30.1})
       .of("cut_rounds", &T::cut_rounds, {0});
   using F = FuseOptions;
-  Faults<F>(faults, [](const F& o) { fuse_crown_and_root({}, {}, up, o); })
+  Faults<F>(faults, [](const F& o) { fuse_crown_and_root(dome(), {}, up, o); })
       .of("edge_growth", &F::edge_growth, {0.0})
       .of("edge_shrinkage", &F::edge_shrinkage, {0.0})
       .of("attempts", &F::attempts, {0})
@@ -306,7 +308,7 @@ TEST(OptionRanges, OfTheRoot) {
   using R = RemeshRootOptions;
   Faults<R>(faults,
             [&](const R& o) {
-              RestoredTooth tooth;
+              JoinedTooth tooth;
               remesh_root(tooth, walk, lengths, {}, 0, o);
             })
       .of("iterations", &R::iterations, {-1})
@@ -326,8 +328,8 @@ TEST(OptionRanges, OfTheRoot) {
 TEST(OptionRanges, OfFramesAndFigures) {
   std::vector<Fault> faults;
   using R = RegistrationOptions;
-  for (const auto& use : {Faults<R>::Use([](const R& o) { canonical_frame({}, 36, {}, o); }),
-                          Faults<R>::Use([](const R& o) { guess_fdi_type({}, {}, o); }),
+  for (const auto& use : {Faults<R>::Use([](const R& o) { canonical_frame(dome(), 36, {}, o); }),
+                          Faults<R>::Use([](const R& o) { guess_fdi_type(dome(), {}, o); }),
                           Faults<R>::Use([](const R& o) { fit_mean_crown({}, {}, true, true, up, o); })})
     Faults<R>(faults, use)
         .of("start_angles", &R::start_angles, {3})

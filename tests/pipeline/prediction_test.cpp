@@ -9,6 +9,7 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <gtest/gtest.h>
 
@@ -20,10 +21,10 @@ namespace {
 /// A sample crown with its pose.
 class Prediction : public testing::Test {
  protected:
-  const CompletionModels::Content& content = test::models().content();
+  const CompletionModels::Content& content = *content_of(test::models());
   const TriangleMesh crown = load_mesh(test::source_folder / "samples" / "crown_34.ply").mesh;
   const CrownFrame frame =
-      canonical_frame(crown, 34, content.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(34))]);
+      canonical_frame(prepare_crown(crown), 34, content.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(34))]);
   std::vector<RootSource> tried;
 
   RootPrediction predict(const std::function<bool(RootSource)>& agrees) {

@@ -56,7 +56,8 @@ void expect_promises(const TriangleMesh& crown, const CompletedTooth& tooth) {
   exact.compare_as_float = false;
   const CheckReport report = check(crown, tooth.mesh, exact);
   EXPECT_TRUE(report.holds()) << (report.failures.empty() ? "" : report.failures.front());
-  EXPECT_EQ(tooth.record.kept_vertices.size() + tooth.record.dropped_vertices.size(), crown.vertices.size());
+  EXPECT_EQ(tooth.record.crown.kept_vertices.size() + tooth.record.crown.dropped_vertices.size(),
+            crown.vertices.size());
   EXPECT_TRUE(tooth.record.repairs.empty());
 }
 
@@ -68,7 +69,7 @@ TEST_P(RawCrowns, AreCompletedWithTheSkirtTakenOff) {
   const CompletedTooth tooth = complete_tooth(raw, models(), coarse(true));
   expect_promises(raw, tooth);
   EXPECT_TRUE(tooth.record.promises.new_triangles.holds());
-  EXPECT_GT(tooth.record.kept_vertices.size(), 700U);
+  EXPECT_GT(tooth.record.crown.kept_vertices.size(), 700U);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RawCrowns, testing::ValuesIn(test::raw_kinds()), [](const auto& kind) {

@@ -42,7 +42,7 @@ void expect_promises(const CompletedTooth& tooth) {
 
 /// The deepest vertex along the growth axis.
 Point apex(const CompletedTooth& tooth) {
-  const Eigen::Vector3d axis = tooth.record.growth_axis;
+  const Eigen::Vector3d axis = tooth.record.frame.growth_axis;
   return *std::min_element(tooth.mesh.vertices.begin(), tooth.mesh.vertices.end(),
                            [&](const Point& a, const Point& b) { return a.dot(axis) < b.dot(axis); });
 }
@@ -52,8 +52,8 @@ TEST(RootWishes, AMeasuredLengthIsKept) {
     CompleteOptions options = premolar();
     options.steering.length_mm = wanted;
     const CompletedTooth tooth = complete_tooth(crown(), models(), options);
-    EXPECT_NEAR(tooth.record.root_length_mm, wanted, 0.1);
-    EXPECT_FALSE(tooth.record.root_interval);
+    EXPECT_NEAR(tooth.record.root.length_mm, wanted, 0.1);
+    EXPECT_FALSE(tooth.record.root.interval);
     expect_promises(tooth);
   }
 }
@@ -65,7 +65,7 @@ TEST(RootWishes, TorqueTurnsTheApexToTheTongue) {
   const CompletedTooth tooth = complete_tooth(crown(), models(), options);
   expect_promises(tooth);
   const Eigen::Vector3d to_world = (apex(tooth) - apex(expected()));
-  const Eigen::Vector3d moved = tooth.record.frame_rotation * to_world;  // left tooth: no mirror
+  const Eigen::Vector3d moved = tooth.record.frame.rotation * to_world;  // left tooth: no mirror
   EXPECT_LT(moved.y(), -1);                                              // +y is the cheek
   EXPECT_GT(moved.x(), 0.3);                                             // +x is mesial for lower teeth
 }
@@ -73,8 +73,8 @@ TEST(RootWishes, TorqueTurnsTheApexToTheTongue) {
 TEST(RootWishes, UncertaintyIsNoneOnTheCrownAndGrowsDownTheRoot) {
   const CompletedTooth& tooth = expected();
   ASSERT_EQ(tooth.uncertainty.size(), tooth.mesh.vertices.size());
-  const Eigen::Vector3d axis = tooth.record.growth_axis;
-  const double deepest = apex(tooth).dot(axis), length = tooth.record.root_length_mm;
+  const Eigen::Vector3d axis = tooth.record.frame.growth_axis;
+  const double deepest = apex(tooth).dot(axis), length = tooth.record.root.length_mm;
   double upper = 0, lower = 0;
   int upper_count = 0, lower_count = 0;
   for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v) {
@@ -93,22 +93,22 @@ TEST(RootWishes, UncertaintyIsNoneOnTheCrownAndGrowsDownTheRoot) {
 }
 
 TEST(RootWishes, CandidatesSpreadOverTheInterval) {
-  ASSERT_TRUE(expected().record.root_interval) << "the shipped weights are calibrated";
-  const RootInterval interval = *expected().record.root_interval;
+  ASSERT_TRUE(expected().record.root.interval) << "the shipped weights are calibrated";
+  const RootInterval interval = *expected().record.root.interval;
   EXPECT_LT(interval.length_low_mm, interval.length_high_mm);
   EXPECT_GT(interval.apex_radius_mm, 0);
   const auto candidates = complete_candidates(crown(), models(), 3, premolar());
   ASSERT_EQ(candidates.size(), 3U);
   EXPECT_EQ(candidates[0].mesh.vertices, expected().mesh.vertices);
-  EXPECT_NEAR(candidates[1].record.root_length_mm, interval.length_low_mm, 0.1);
-  EXPECT_NEAR(candidates[2].record.root_length_mm, interval.length_high_mm, 0.1);
+  EXPECT_NEAR(candidates[1].record.root.length_mm, interval.length_low_mm, 0.1);
+  EXPECT_NEAR(candidates[2].record.root.length_mm, interval.length_high_mm, 0.1);
   for (const CompletedTooth& tooth : candidates) expect_promises(tooth);
 }
 
 TEST(RootWishes, CandidatesSayWhatTheyWereMadeWith) {
   const auto candidates = complete_candidates(crown(), models(), 3);
   ASSERT_EQ(candidates.size(), 3U);
-  const RootInterval interval = candidates[0].record.root_interval.value();
+  const RootInterval interval = candidates[0].record.root.interval.value();
   const std::array<std::optional<double>, 3> lengths{std::nullopt, interval.length_low_mm, interval.length_high_mm};
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const CompletedTooth& tooth = candidates[i];

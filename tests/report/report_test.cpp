@@ -45,7 +45,7 @@ TEST(Report, HasWhatTheSchemaAsksFor) {
   EXPECT_EQ(report.size(), wanted["else"]["required"].size());
   EXPECT_EQ(report["report_version"], wanted["properties"]["report_version"]["const"]);
   EXPECT_EQ(report["input"]["sha256"].get<std::string>().size(), 64U);
-  EXPECT_EQ(report["crown"]["kept_vertices"].size(), tooth.record.kept_vertices.size());
+  EXPECT_EQ(report["crown"]["kept_vertices"].size(), tooth.record.crown.kept_vertices.size());
   EXPECT_GT(report["stages"].size(), 4U);
   EXPECT_TRUE(report["input"]["file"].is_null()) << "names of files tell of patients";
   input.file_name = "caf\xe9_34.ply";  // Latin-1, no UTF-8
@@ -81,7 +81,7 @@ TEST(Report, OfARefusedCrownSaysWhyAndWhere) {
 
 TEST(Report, WhatItExcusesIsReadBackInTheMeshsNumbers) {
   CompletedTooth tooth;
-  tooth.record.dropped_vertices = {{1, "cap"}, {2, "merged"}, {3, "skirt"}};
+  tooth.record.crown.dropped_vertices = {{1, "cap"}, {2, "merged"}, {3, "skirt"}};
   tooth.record.repairs = {{"merged", {2}, {}, {0}}, {"turned over", {}, {7, 8}}};
   EXPECT_EQ(vertices_not_of_tooth(tooth.record), (std::vector<int>{1, 3}));
   ReportedInput input;

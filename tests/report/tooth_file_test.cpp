@@ -22,8 +22,8 @@ CompletedTooth small_tooth() {
   tooth.source = {VertexSource::scan, VertexSource::scan, VertexSource::transition, VertexSource::predicted};
   tooth.uncertainty = {0, 0, 0.1, 0.2};
   CompletionRecord& record = tooth.record;
-  record.kept_vertices = {0, 2};
-  record.dropped_vertices = {{1, "cap"}, {3, "skirt"}};
+  record.crown.kept_vertices = {0, 2};
+  record.crown.dropped_vertices = {{1, "cap"}, {3, "skirt"}};
   record.repairs = {{"merged", {1}, {5}, {3}}};
   record.promises.crown.dropped_vertices = {1, 3};
   record.warnings = {"first"};
@@ -97,16 +97,16 @@ TEST(ToothFile, RecordsNameTheFilesOwnVertices) {
   crown.notes = {"welded"};
   CompletionRecord record = small_tooth().record;
   refer_to_file(record, crown, "a.ply");
-  EXPECT_EQ(record.kept_vertices, (std::vector<int>{0, 2}));  // the same numbers in mesh and file
+  EXPECT_EQ(record.crown.kept_vertices, (std::vector<int>{0, 2}));  // the same numbers in mesh and file
   EXPECT_EQ(all_warnings(record),
             (std::vector<std::string>{"welded", "first", "A sharp angle. It is beside the crown's vertices 1, 2."}));
   crown.file_vertices = {0, 10, 20, 30};
   record = small_tooth().record;
   refer_to_file(record, crown, "a.ply");
-  EXPECT_EQ(record.kept_vertices, (std::vector<int>{0, 20}));
+  EXPECT_EQ(record.crown.kept_vertices, (std::vector<int>{0, 20}));
   EXPECT_EQ(all_warnings(record).back(), "A sharp angle. It is beside the crown's vertices 10, 20.");
-  EXPECT_EQ(record.dropped_vertices[0].vertex, 10);
-  EXPECT_EQ(record.dropped_vertices[1].vertex, 30);
+  EXPECT_EQ(record.crown.dropped_vertices[0].vertex, 10);
+  EXPECT_EQ(record.crown.dropped_vertices[1].vertex, 30);
   EXPECT_EQ(record.repairs[0].vertices, std::vector<int>{10});
   EXPECT_EQ(record.repairs[0].merged_into, std::vector<int>{30});
   EXPECT_EQ(record.repairs[0].triangles, std::vector<int>{5});
@@ -149,10 +149,10 @@ TEST(ToothFile, ACrownOfLooseTrianglesIsTheSameTooth) {
   ASSERT_EQ(welded.mesh.vertices.size(), crown.mesh.vertices.size());
   CompletedTooth tooth = complete_tooth(welded.mesh, test::models(), test::for_tooth(34));
   refer_to_file(tooth.record, welded, "tooth.ply");
-  ASSERT_EQ(tooth.record.kept_vertices.size(), crown.mesh.vertices.size());
-  EXPECT_TRUE(std::is_sorted(tooth.record.kept_vertices.begin(), tooth.record.kept_vertices.end()));
-  for (std::size_t v = 0; v < tooth.record.kept_vertices.size(); ++v)
-    EXPECT_EQ(tooth.mesh.vertices[v], written[static_cast<std::size_t>(tooth.record.kept_vertices[v])]);
+  ASSERT_EQ(tooth.record.crown.kept_vertices.size(), crown.mesh.vertices.size());
+  EXPECT_TRUE(std::is_sorted(tooth.record.crown.kept_vertices.begin(), tooth.record.crown.kept_vertices.end()));
+  for (std::size_t v = 0; v < tooth.record.crown.kept_vertices.size(); ++v)
+    EXPECT_EQ(tooth.mesh.vertices[v], written[static_cast<std::size_t>(tooth.record.crown.kept_vertices[v])]);
 }
 
 }  // namespace

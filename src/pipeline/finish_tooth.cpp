@@ -1,0 +1,174 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", figure 1: the order of the stages,
+// from the guiding surface on.
+
+#include "completion/steering.hpp"
+#include "completion/uncertainty.hpp"
+#include "fusion/fuse.hpp"
+#include "guiding/guiding_cloud.hpp"
+#include "intake/part_of_mesh.hpp"
+#include "mesh/closest_point.hpp"
+#include "mesh/geometry.hpp"
+#include "pipeline/missed_promise.hpp"
+#include "pipeline/prepared_tooth.hpp"
+#include "pipeline/report_parts.hpp"
+#include "pipeline/stage_clock.hpp"
+#include "rhizodont/check.hpp"
+#include "rhizodont/complete.hpp"
+#include "rhizodont/error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace rhizodont {
+namespace {
+
+void note_guiding_distance(const TriangleMesh& crown, const TriangleMesh& surface, JoiningRecord& joining) {
+  const ClosestPointIndex index(surface);
+  double sum = 0;
+  for (const Point& p : crown.vertices) {
+    const double d = index.closest(p).distance;
+    sum += d;
+    joining.guiding_distance_max_mm = std::max(joining.guiding_distance_max_mm, d);
+  }
+  joining.guiding_distance_mean_mm = sum / static_cast<double>(crown.vertices.size());
+  joining.guiding_vertices = static_cast<int>(surface.vertices.size());
+}
+
+void note_fusion(const FusedTooth& fused, JoiningRecord& joining) {
+  joining.steiner_points = fused.steiner_points;
+  joining.crown_triangles_direct = fused.crown_triangles_direct;
+  joining.crown_triangles_restored = fused.tooth.triangles_brought_back;
+  joining.non_delaunay_edges_left = fused.non_delaunay_edges_left;
+  joining.root_sites = fused.root_sites;
+  joining.sites_without_cell = fused.sites_without_cell;
+  joining.triangles_filled = fused.tooth.triangles_filled;
+  joining.holes_filled = fused.tooth.holes_filled;
+  const RootRemeshing& done = fused.remeshing;
+  joining.remeshing_operations = done.splits + done.collapses + done.flips + done.mended;
+  joining.sharpest_notch_degrees = fused.sharpest_notch;
+  joining.transition_vertices = static_cast<int>(fused.transition.vertices.size());
+  const FuseSeconds& s = fused.seconds;
+  joining.steps = {{"separation", s.separation}, {"root sites", s.sites},    {"diagram and dual", s.joining},
+                   {"restoring", s.restoring},   {"remeshing", s.remeshing}, {"transition", s.transition}};
+  joining.transition_width_mm = fused.transition.width;
+  joining.transition_largest_move_mm = fused.transition.largest_move;
+}
+
+RootRecord root_record(const TriangleMesh& crown, const TriangleMesh& tooth, const Eigen::Vector3d& growth_axis,
+                       RootSource source) {
+  const auto [tooth_low, tooth_high] = extent_along(tooth.vertices, growth_axis);
+  RootRecord root;
+  root.source = source;
+  root.length_mm = extent_along(crown.vertices, growth_axis).first - tooth_low;
+  root.tooth_length_mm = tooth_high - tooth_low;
+  return root;
+}
+
+/// How far new vertices and the root's length may be off. `tooth` in mm, the kept crown's vertices first.
+void note_uncertainty(const PreparedCrown& crown, const TriangleMesh& tooth, const PredictedTooth& predicted,
+                      const RootSteering& steering, CompletedTooth& completed) {
+  CompletionRecord& record = completed.record;
+  completed.uncertainty = expected_distances(tooth, crown, predicted, GuidingCloudOptions().correction_reach);
+  record.root.apex_expected_distance_mm = expected_distance_at_apex(predicted, record.frame.growth_axis);
+  const std::optional<UncertaintyScales> scales = uncertainty_scales(record.model);
+  if (!scales) return;
+  for (double& u : completed.uncertainty) u *= scales->surface;
+  if (steering.any()) return;
+  const double s = record.root.apex_expected_distance_mm;
+  const auto [low, high] = length_interval(record.root.length_mm, s, *scales);
+  record.root.interval = {low, high, scales->apex * s};
+}
+
+/// What the promises come to, kept or not. As `check` does by the report: what a cap or a skirt was is not demanded,
+/// but repairs must leave the least share.
+CheckReport evidence(const TriangleMesh& input, const TriangleMesh& tooth, const CompletionRecord& record) {
+  CheckOptions options = allowing_for(record.repairs);
+  options.dropped_vertices = vertices_not_of_tooth(record);
+  options.compare_as_float = false;
+  return check(input, tooth, options);
+}
+
+/// Brings the tooth back to where the input is, with evidence for the promises. Far from the origin floats lie so wide
+/// apart that new triangles may come to cross each other: then the new vertices keep all their digits.
+void put_in_place(const TriangleMesh& fused, const TriangleMesh& input, const std::vector<int>& kept, Workplace place,
+                  CompletedTooth& tooth) {
+  CompletionRecord& record = tooth.record;
+  tooth.mesh = in_input_coordinates(fused, input, kept, place);
+  record.promises = evidence(input, tooth.mesh, record);
+  if (!record.promises.holds() && place.as_float && !place.origin.isZero(0)) {
+    place.as_float = false;
+    tooth.mesh = in_input_coordinates(fused, input, kept, place);
+    record.promises = evidence(input, tooth.mesh, record);
+    record.warnings.push_back(
+        "The crown lies so far from the origin that single precision is too coarse for new triangles: new vertices "
+        "have double precision. Move the scan to the origin for STL.");
+  }
+  if (record.promises.holds()) return;
+  std::string sentence = "No tooth was found that keeps the promises:";
+  for (const std::string& failure : record.promises.failures) sentence += " " + failure;
+  throw NoResultError(sentence);
+}
+
+/// Joins the steered root to the crown. `tooth`: its options, and the record of the preparation.
+void finish(const PreparedTooth::Content& prepared, StageClock& clock, CompletedTooth& tooth) {
+  CompletionRecord& record = tooth.record;
+  const PreparedCrown& crown = prepared.crown;
+  const RootSteering& steering = tooth.options.steering;
+  clock.begin("joining");
+  TriangleMesh surface = prepared.surface.mesh;
+  PredictedTooth predicted = prepared.predicted;
+  for (std::vector<Point>* points : {&surface.vertices, &predicted.cloud.points})
+    steer_root(*points, crown.mesh, prepared.frame, record.fdi, steering);
+  note_guiding_distance(crown.mesh, surface, record.joining);
+  if (prepared.surface.fit.undone)
+    record.warnings.push_back(fmt::format(
+        "Drawn onto the crown the guiding surface would have met itself, so it stays up to {:.2f} mm off the "
+        "crown; look at the joint.",
+        record.joining.guiding_distance_max_mm));
+  FuseOptions fuse;
+  fuse.transition.width = tooth.options.transition;
+  const FusedTooth fused = on_part(prepared.old_vertices, prepared.old_triangles,
+                                   [&] { return fuse_crown_and_root(crown, surface, record.frame.growth_axis, fuse); });
+  note_fusion(fused, record.joining);
+  record.warnings.insert(record.warnings.end(), fused.warnings.begin(), fused.warnings.end());
+  record.root = root_record(crown.mesh, fused.tooth.mesh, record.frame.growth_axis, record.root.source);
+  note_uncertainty(crown, fused.tooth.mesh, predicted, steering, tooth);
+
+  clock.begin("check");
+  put_in_place(fused.tooth.mesh, prepared.input, prepared.old_vertices, prepared.place, tooth);
+  tooth.source.assign(tooth.mesh.vertices.size(), VertexSource::predicted);
+  std::fill_n(tooth.source.begin(), prepared.old_vertices.size(), VertexSource::scan);
+  for (const int v : fused.transition.vertices) tooth.source[static_cast<std::size_t>(v)] = VertexSource::transition;
+  record.missed_places = where_promise_three_is_missed(tooth.mesh, prepared.old_vertices, crown.mesh.triangles.size(),
+                                                       record.promises.new_triangles);
+}
+
+}  // namespace
+
+CompletedTooth finish_tooth(const PreparedTooth& prepared, const RootSteering& steering,
+                            std::optional<double> transition, const ProgressCallback& progress) {
+  const PreparedTooth::Content& content = *prepared.content_;
+  CompletedTooth tooth;
+  tooth.options = content.options;
+  tooth.options.steering = steering;
+  tooth.options.transition = transition;
+  require_options_in_range(tooth.options);
+  tooth.record = content.record;
+  return with_threads(content.options.threads, [&] {
+    StageClock clock(progress);
+    hinting([&] { finish(content, clock, tooth); },
+            [&] {
+              return hint_at_options(moved_by(content.input, -content.place.origin), *content.models, content.options,
+                                     content.old_vertices);
+            });
+    const std::vector<StageRecord> stages = clock.finish();
+    tooth.record.stages.insert(tooth.record.stages.end(), stages.begin(), stages.end());
+    return std::move(tooth);
+  });
+}
+
+}  // namespace rhizodont

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/identify_tooth.hpp"
+
+#include "pipeline/crown_likeness.hpp"
+#include "teeth/fdi.hpp"
+
+#include <fmt/format.h>
+
+namespace rhizodont {
+
+IdentifiedTooth identify_tooth(const PreparedCrown& crown, std::optional<int> fdi,
+                               const CompletionModels::Content& models) {
+  IdentifiedTooth tooth;
+  tooth.guessed = !fdi;
+  if (models.likeness) {
+    tooth.likeness = judge_crown(crown, fdi, models.atlas, *models.likeness);
+    tooth.fdi = tooth.likeness->said.fdi;
+    tooth.warning = likeness_warning(*tooth.likeness, tooth.guessed);
+  } else {
+    tooth.fdi = fdi ? *fdi : guess_fdi_type(crown, models.atlas).fdi;
+    if (tooth.guessed)
+      tooth.warning = fmt::format("No FDI number was given; by its shape the crown was taken for tooth {}.", tooth.fdi);
+  }
+  tooth.frame =
+      canonical_frame(crown, tooth.fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(tooth.fdi))]);
+  return tooth;
+}
+
+}  // namespace rhizodont

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "completion/registration.hpp"
+#include "pipeline/models.hpp"
+#include "rhizodont/completion_record.hpp"
+#include "teeth/prepared_crown.hpp"
+
+#include <optional>
+#include <string>
+
+namespace rhizodont {
+
+/// Which tooth a crown is.
+struct IdentifiedTooth {
+  int fdi = 0;
+  bool guessed = false;                   ///< nobody said
+  std::optional<CrownLikeness> likeness;  ///< not there if there is nothing to judge by
+  CrownFrame frame;                       ///< canonical pose for that tooth
+  std::optional<std::string> warning;     ///< a sentence for the user
+};
+
+/// Which tooth the crown is, whether it looks like it, and its canonical pose. @param fdi unset: guessed, and so said
+/// Throws InputError for what looks like no tooth, and as `canonical_frame`.
+IdentifiedTooth identify_tooth(const PreparedCrown& crown, std::optional<int> fdi,
+                               const CompletionModels::Content& models);
+
+}  // namespace rhizodont
