@@ -32,6 +32,8 @@ namespace {
 
 const std::filesystem::path models = std::filesystem::path(RHIZODONT_SOURCE_DIR) / "models";
 
+constexpr const char* crown_models_folder = "crowns/ssm";
+
 /// Seeds of crowns that bounds come from, and of those in the table: neither had a part in the training.
 constexpr std::uint64_t bounds_seed = std::uint64_t{1} << 40, table_seed = std::uint64_t{1} << 41;
 
@@ -39,11 +41,13 @@ TriangleMesh generated_crown(const ToothFamilies& families, int type, std::uint6
   return draw_scanned_crown(generate_tooth(families, type, seed), random);
 }
 
-LabelledPanoramas training_panoramas(const ToothFamilies& families, int per_type) {
+LabelledPanoramas training_panoramas(const ToothFamilies& families, const std::vector<ModelCrown>& crown_models,
+                                     int per_type) {
   std::vector<std::vector<LikenessSample>> of_tooth(static_cast<std::size_t>(per_type) * tooth_type_count);
   tbb::parallel_for(std::size_t{0}, of_tooth.size(), [&](std::size_t i) {
     try {
-      of_tooth[i] = make_likeness_samples(families, static_cast<int>(i % tooth_type_count), i / tooth_type_count);
+      of_tooth[i] =
+          make_likeness_samples(families, crown_models, static_cast<int>(i % tooth_type_count), i / tooth_type_count);
     } catch (const NoResultError&) {  // no draw of this seed made a tooth
     }
   });
@@ -56,8 +60,10 @@ LabelledPanoramas training_panoramas(const ToothFamilies& families, int per_type
   return all;
 }
 
-/// Bounds by held-out crowns, of which every third is low, and by what is no crown.
-LikenessBounds bounds_of(const ToothFamilies& families, const ToothClassifier& classifier, int per_type) {
+/// Bounds by held-out crowns, of which every third is low and every second, where there are models, a model's crown
+/// without a template; and by what is no crown.
+LikenessBounds bounds_of(const ToothFamilies& families, const std::vector<ModelCrown>& crown_models,
+                         const ToothClassifier& classifier, int per_type) {
   std::vector<Likeness> crowns, strangers;
   std::vector<std::size_t> teeth;
   for (int i = 0; i < per_type; ++i)
@@ -65,7 +71,8 @@ LikenessBounds bounds_of(const ToothFamilies& families, const ToothClassifier& c
       const std::uint64_t seed = bounds_seed + static_cast<std::uint64_t>(i);
       RandomStream random(seed, 700 + static_cast<std::uint64_t>(type));
       try {
-        const SyntheticTooth tooth = generate_tooth(families, type, seed);
+        const auto modelled = i % 2 == 0 ? draw_model_crown_of_type(crown_models, type, random) : std::nullopt;
+        const SyntheticTooth tooth = modelled ? *modelled : generate_tooth(families, type, seed);
         const TriangleMesh crown = i % 3 == 0 ? draw_low_crown(tooth, random) : draw_scanned_crown(tooth, random);
         crowns.push_back(likeness(crown, growth_axis(crown), classifier));
         teeth.push_back(2 * static_cast<std::size_t>(type));
@@ -81,7 +88,8 @@ LikenessBounds bounds_of(const ToothFamilies& families, const ToothClassifier& c
 /// Sets the bounds of a file of weights anew.
 void set_bounds(const std::filesystem::path& data, const std::filesystem::path& file, int per_type) {
   TensorFile weights = read_safetensors(file);
-  const LikenessBounds bounds = bounds_of(load_tooth_families(data), ToothClassifier(weights), per_type);
+  const LikenessBounds bounds = bounds_of(load_tooth_families(data), load_model_crowns(data / crown_models_folder),
+                                          ToothClassifier(weights), per_type);
   note_bounds(bounds, weights);
   write_safetensors(file, weights);
   fmt::print("{}: bounds {:.2f}, {:.2f}, {:.2f}\n", file.string(), bounds.other_tooth, bounds.unlike, bounds.refused);
@@ -89,7 +97,8 @@ void set_bounds(const std::filesystem::path& data, const std::filesystem::path& 
 
 void fit(const std::filesystem::path& data, const std::filesystem::path& file, int per_type, int steps) {
   const ToothFamilies families = load_tooth_families(data);
-  const LabelledPanoramas panoramas = training_panoramas(families, per_type);
+  const std::vector<ModelCrown> crown_models = load_model_crowns(data / crown_models_folder);
+  const LabelledPanoramas panoramas = training_panoramas(families, crown_models, per_type);
   fmt::print("{} panoramas\n", panoramas.labels.size());
   ClassifierTrainingOptions options;
   options.steps = steps;
@@ -98,7 +107,7 @@ void fit(const std::filesystem::path& data, const std::filesystem::path& file, i
     std::fflush(stdout);
   };
   TensorFile weights = train_classifier(panoramas, options);
-  const LikenessBounds bounds = bounds_of(families, ToothClassifier(weights), std::max(60, per_type / 4));
+  const LikenessBounds bounds = bounds_of(families, crown_models, ToothClassifier(weights), std::max(60, per_type / 4));
   note_bounds(bounds, weights);
   weights.metadata["content"] = "A network that tells which tooth a crown is (src/completion/tooth_classifier.hpp)";
   weights.metadata["training.panoramas"] = std::to_string(panoramas.labels.size());
@@ -169,7 +178,9 @@ void table(const std::filesystem::path& data, int per_type) {
   const ToothFamilies families = load_tooth_families(data);
   const Atlas atlas = load_atlas(models / "atlas.safetensors");
   const LikenessModel model = load_likeness(models / "likeness.safetensors");
-  Tally genuine, side, jaw, wrong_class;
+  const std::vector<ModelCrown> crown_models = load_model_crowns(data / crown_models_folder);
+  Tally genuine, modelled, side, jaw, wrong_class;
+  Guesses modelled_guesses;
   std::array<Tally, unlike_kind_count> unlike;
   std::array<Guesses, tooth_type_count> guesses;
   Guesses all;
@@ -182,6 +193,11 @@ void table(const std::filesystem::path& data, int per_type) {
       genuine.add(crown, fdi, atlas, model);
       guesses[static_cast<std::size_t>(type)].add(crown, fdi, atlas, model);
       all.add(crown, fdi, atlas, model);
+      if (const auto tooth = draw_model_crown_of_type(crown_models, type, random)) {
+        const TriangleMesh other = draw_scanned_crown(*tooth, random);
+        modelled.add(other, fdi, atlas, model);
+        modelled_guesses.add(other, fdi, atlas, model);
+      }
       side.add(crown, of_other_side(fdi), atlas, model);
       jaw.add(crown, of_other_jaw(fdi), atlas, model);
       wrong_class.add(crown, of_other_class(fdi), atlas, model);
@@ -190,6 +206,7 @@ void table(const std::filesystem::path& data, int per_type) {
     }
   fmt::print("{}", tally_head);
   genuine.print("right number (false alarms)");
+  modelled.print("right number, statistical models' crowns");
   side.print("wrong side");
   jaw.print("wrong jaw");
   wrong_class.print("wrong class");
@@ -198,6 +215,7 @@ void table(const std::filesystem::path& data, int per_type) {
   for (int type = 0; type < tooth_type_count; ++type)
     guesses[static_cast<std::size_t>(type)].print(std::to_string(fdi_of_type(type, false)));
   all.print("all");
+  modelled_guesses.print("statistical models' crowns");
 }
 
 /// Crowns in files whose names end in their number (crown_36.ply), as `complete --repair --skirt auto` takes them.

@@ -33,48 +33,6 @@ std::vector<float> floats(const TensorFile& file, const std::string& name, std::
   return load_floats(found->second);
 }
 
-// Points on the cap that closes the crown at the gum: near one plane, which faces away from the cusps. The gum's line
-// is scalloped and the cap a membrane over it, so that whatever looks down is left out too.
-struct Cap {
-  std::vector<bool> is_cap;
-  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // unit, out of the crown
-};
-
-Cap find_cap(const CrownShapeModel& model, const Eigen::Vector3d& down) {
-  const std::size_t count = model.mean.size();
-  Point centre = Point::Zero();
-  for (const Point& p : model.mean) centre += p / static_cast<double>(count);
-  std::vector<Eigen::Vector3d> outward(model.normals);
-  std::vector<std::size_t> candidates;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (outward[i].dot(model.mean[i] - centre) < 0) outward[i] = -outward[i];
-    if (outward[i].dot(down) > 0.4) candidates.push_back(i);
-  }
-  const auto on_plane = [&](std::size_t seed, std::size_t i) {
-    return std::abs(outward[seed].dot(model.mean[i] - model.mean[seed])) < 0.3 && outward[seed].dot(outward[i]) > 0.85;
-  };
-  std::size_t best = 0, most = 0;
-  for (std::size_t seed : candidates) {
-    const auto agree = static_cast<std::size_t>(
-        std::count_if(candidates.begin(), candidates.end(), [&](std::size_t i) { return on_plane(seed, i); }));
-    if (agree > most) best = seed, most = agree;
-  }
-  if (most < 20) throw NoResultError("A crown model has no flat cap at the gum.");
-  Cap cap;
-  double height = 0;
-  for (std::size_t i : candidates)
-    if (on_plane(best, i)) cap.direction += outward[i], height += 1;
-  cap.direction.normalize();
-  double level = 0;
-  for (std::size_t i : candidates)
-    if (on_plane(best, i)) level += cap.direction.dot(model.mean[i]) / height;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double above = level - cap.direction.dot(model.mean[i]);
-    cap.is_cap.push_back(above < 0.15 || outward[i].dot(cap.direction) > 0.3);
-  }
-  return cap;
-}
-
 // The template's crown and neck, as targets for closest points.
 struct CrownSurface {
   std::vector<int> vertex;  ///< into the template
@@ -344,9 +302,45 @@ CrownShapeModel load_crown_shape_model(const std::filesystem::path& file, std::s
   return model;
 }
 
+CrownCap find_cap(const CrownShapeModel& model, bool upper) {
+  const Eigen::Vector3d down = upper ? Eigen::Vector3d::UnitY() : Eigen::Vector3d(-Eigen::Vector3d::UnitY());
+  const std::size_t count = model.mean.size();
+  Point centre = Point::Zero();
+  for (const Point& p : model.mean) centre += p / static_cast<double>(count);
+  std::vector<Eigen::Vector3d> outward(model.normals);
+  std::vector<std::size_t> candidates;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (outward[i].dot(model.mean[i] - centre) < 0) outward[i] = -outward[i];
+    if (outward[i].dot(down) > 0.4) candidates.push_back(i);
+  }
+  const auto on_plane = [&](std::size_t seed, std::size_t i) {
+    return std::abs(outward[seed].dot(model.mean[i] - model.mean[seed])) < 0.3 && outward[seed].dot(outward[i]) > 0.85;
+  };
+  std::size_t best = 0, most = 0;
+  for (std::size_t seed : candidates) {
+    const auto agree = static_cast<std::size_t>(
+        std::count_if(candidates.begin(), candidates.end(), [&](std::size_t i) { return on_plane(seed, i); }));
+    if (agree > most) best = seed, most = agree;
+  }
+  if (most < 20) throw NoResultError("A crown model has no flat cap at the gum.");
+  CrownCap cap;
+  double height = 0;
+  for (std::size_t i : candidates)
+    if (on_plane(best, i)) cap.direction += outward[i], height += 1;
+  cap.direction.normalize();
+  double level = 0;
+  for (std::size_t i : candidates)
+    if (on_plane(best, i)) level += cap.direction.dot(model.mean[i]) / height;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double above = level - cap.direction.dot(model.mean[i]);
+    cap.is_cap.push_back(above < 0.15 || outward[i].dot(cap.direction) > 0.3);
+  }
+  return cap;
+}
+
 CrownModes carry_crown_model(const FamilyTemplate& tooth, const CrownShapeModel& model, const Eigen::Vector3d& buccal,
                              bool upper) {
-  const Cap cap = find_cap(model, upper ? Eigen::Vector3d::UnitY() : Eigen::Vector3d(-Eigen::Vector3d::UnitY()));
+  const CrownCap cap = find_cap(model, upper);
   const Eigen::Vector3d z = -cap.direction, y = (buccal - buccal.dot(z) * z).normalized();
   Affine map;
   map.linear.row(0) = y.cross(z);

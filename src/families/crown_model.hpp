@@ -28,6 +28,17 @@ struct CrownShapeModel {
 /// Throws InputError if the file is missing, damaged or of other shapes.
 CrownShapeModel load_crown_shape_model(const std::filesystem::path& file, std::size_t mode_count, bool right_side);
 
+/// The cap that closes a model's crown at the gum: points near one plane, which faces away from the cusps. The gum's
+/// line is scalloped and the cap a membrane over it, so that whatever looks down is taken for it too.
+struct CrownCap {
+  std::vector<bool> is_cap;                             ///< per point of the model
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< unit, out of the crown
+};
+
+/// Finds the cap of the model's mean crown. @param upper  true for teeth of the upper jaw
+/// Throws NoResultError if there is none.
+CrownCap find_cap(const CrownShapeModel& model, bool upper);
+
 /// A crown model carried onto a template's vertices, in the template's frame and millimetres.
 /// Rows 3 v .. 3 v + 2 belong to vertex v. Below the neck the displacements fade out within the root's upper half.
 struct CrownModes {

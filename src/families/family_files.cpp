@@ -4,6 +4,7 @@
 // Reads the templates and the table of mean dimensions (Wheeler; Ash and Nelson, "Wheeler's Dental Anatomy").
 #include "base/option_range.hpp"
 #include "completion/registration.hpp"
+#include "families/arch_directions.hpp"
 #include "families/mean_teeth.hpp"
 #include "families/self_crossing.hpp"
 #include "families/tooth_family.hpp"
@@ -80,16 +81,6 @@ Eigen::Vector3d crown_centre(const TriangleMesh& mesh, const std::vector<std::ui
     if (crown[v] == 1) sum += mesh.vertices[v], count += 1;
   }
   return sum / count;
-}
-
-// Outward direction of the quarter of an ellipse that the arch resembles: from a point a little before its back end.
-Eigen::Vector3d buccal_direction(const std::vector<Eigen::Vector3d>& arch, std::size_t i) {
-  const Eigen::Vector3d before = i == 0 ? Eigen::Vector3d(-arch[1].x(), arch[1].y(), arch[1].z()) : arch[i - 1];
-  const Eigen::Vector3d after = i + 1 < arch.size() ? arch[i + 1] : arch[i];
-  Eigen::Vector3d along = after - before;  // towards the back of the left side
-  along.y() = 0;
-  Eigen::Vector3d outward(-along.z(), 0, along.x());
-  return outward.normalized();
 }
 
 // Neighbours in the arch share forms; a first upper premolar has a single root in about 40 % of people, a second one

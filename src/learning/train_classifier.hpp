@@ -26,7 +26,7 @@ struct ClassifierTrainingOptions {
   int batch = 96;                               ///< panoramas per step, >= 2
   double learning_rate = 2.5e-3;                ///< largest rate, reached after a third of the steps, > 0
   double weight_decay = 0.02;                   ///< >= 0
-  double label_smoothing = 0.02;                ///< 0..1
+  double label_smoothing = 0.005;               ///< 0..1
   double dropout = 0.2;                         ///< of what the last two layers see, 0..1
   int width = 16;                               ///< channels of the first layer, 1..256
   int classes = 33;                             ///< odd, >= 3

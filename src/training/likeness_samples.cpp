@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <optional>
 
 namespace rhizodont {
 namespace {
@@ -37,7 +38,22 @@ CrownPanorama seen_from_beside(const TriangleMesh& crown, RandomStream& random) 
 }  // namespace
 
 TriangleMesh draw_scanned_crown(const SyntheticTooth& tooth, RandomStream& random) {
-  TriangleMesh crown = draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh;
+  // Where teeth stand crowded a scanner does not see between them, up to near the edge or the cusps.
+  constexpr double crowded_probability = 0.35, side_probability = 0.75, highest_share = 0.85;
+  TriangleMesh crown = [&] {
+    if (!random.chance(crowded_probability))
+      return draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh;
+    for (int attempt = 0; attempt < 10; ++attempt) {
+      GumLine line = draw_gum_line(tooth, paper_share, gap_probability, random);
+      for (std::size_t side = 0; side < 2; ++side) {
+        if (!random.chance(side_probability)) continue;
+        line.gap_mm[side] = random.uniform(0, highest_share) * tooth.crown_height;
+        line.gap_width[side] = random.uniform(0.2, 0.6);
+      }
+      if (auto crop = crop_crown(tooth, line)) return *std::move(crop);
+    }
+    return draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh;
+  }();
   maybe_add_skirt(crown, random);
   return crown;
 }
@@ -54,9 +70,19 @@ TriangleMesh draw_low_crown(const SyntheticTooth& tooth, RandomStream& random) {
   throw NoResultError("No gum line left a crown in one piece with one border.");
 }
 
-std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families, int type, std::uint64_t seed) {
+std::optional<SyntheticTooth> draw_model_crown_of_type(const std::vector<ModelCrown>& models, int type,
+                                                       RandomStream& random) {
+  constexpr double factor = 1.2;  // of the models' own deviations: what 95 people vary less than all
+  std::vector<const ModelCrown*> fitting;
+  for (const ModelCrown& model : models)
+    if (model.mean.type == type) fitting.push_back(&model);
+  if (fitting.empty()) return std::nullopt;
+  return draw_model_crown(*fitting[random.index(fitting.size())], factor, random);
+}
+
+std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families, const std::vector<ModelCrown>& models,
+                                                  int type, std::uint64_t seed) {
   RandomStream random(seed, 700 + static_cast<std::uint64_t>(type));
-  const SyntheticTooth tooth = generate_tooth(families, type, seed);
   std::vector<LikenessSample> samples;
   const auto add = [&](std::size_t label, const auto& make) {
     try {
@@ -65,15 +91,19 @@ std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families,
     }
   };
   const std::size_t label = 2 * static_cast<std::size_t>(type);
-  add(label, [&] { return draw_scanned_crown(tooth, random); });
-  add(label, [&] { return draw_scanned_crown(tooth, random); });
-  add(label, [&] { return draw_low_crown(tooth, random); });
-  for (int i = 0; i < 2; ++i) {
-    const auto kind = static_cast<UnlikeKind>(random.index(unlike_kind_count));
-    add(tooth_count, [&] {
-      return unlike_crown(draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh, kind, random);
-    });
-  }
+  const auto add_crowns_of = [&](const SyntheticTooth& tooth, int strangers) {
+    add(label, [&] { return draw_scanned_crown(tooth, random); });
+    add(label, [&] { return draw_scanned_crown(tooth, random); });
+    add(label, [&] { return draw_low_crown(tooth, random); });
+    for (int i = 0; i < strangers; ++i) {
+      const auto kind = static_cast<UnlikeKind>(random.index(unlike_kind_count));
+      add(tooth_count, [&] {
+        return unlike_crown(draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh, kind, random);
+      });
+    }
+  };
+  add_crowns_of(generate_tooth(families, type, seed), 2);
+  if (const auto crown = draw_model_crown_of_type(models, type, random)) add_crowns_of(*crown, 1);
   return samples;
 }
 

@@ -4,21 +4,28 @@
 
 #include "base/random_stream.hpp"
 #include "completion/crown_panorama.hpp"
+#include "families/model_crowns.hpp"
 #include "families/tooth_family.hpp"
 #include "rhizodont/mesh.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace rhizodont {
 
-/// A crown as scans give it: mostly cut near the junction, some with notches at the contacts or remains of gum.
+/// A crown as scans give it: mostly cut near the junction, some with notches at the contacts, in a third of them up to
+/// near the top, or with remains of gum.
 TriangleMesh draw_scanned_crown(const SyntheticTooth& tooth, RandomStream& random);
 
 /// A crown half erupted, or deep in gum: up to more than half of its height is missing. Throws NoResultError where ten
 /// gum lines left no disc.
 TriangleMesh draw_low_crown(const SyntheticTooth& tooth, RandomStream& random);
+
+/// A crown of a left type (0..15) drawn from its statistical models, left or right; nothing where there are none.
+std::optional<SyntheticTooth> draw_model_crown_of_type(const std::vector<ModelCrown>& models, int type,
+                                                       RandomStream& random);
 
 /// What to learn from which tooth a crown is.
 struct LikenessSample {
@@ -27,8 +34,10 @@ struct LikenessSample {
 };
 
 /// Of tooth number `seed` of a type: two crowns as scans give them, a low one, and two things that are none
-/// (unlike_crown), each seen from a little beside where it should be. Fewer where a draw came to nothing. Depends on
-/// type and seed alone. Throws as generate_tooth.
-std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families, int type, std::uint64_t seed);
+/// (unlike_crown), each seen from a little beside where it should be; then the same, with one thing that is none, of a
+/// crown drawn from the statistical models alone, where they have the type. Fewer where a draw came to nothing. Depends
+/// on type and seed alone. Throws as generate_tooth.
+std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families, const std::vector<ModelCrown>& models,
+                                                  int type, std::uint64_t seed);
 
 }  // namespace rhizodont
