@@ -294,6 +294,21 @@ TEST(RemeshRoot, SplitsLongEdgesAndCollapsesShortOnes) {
   EXPECT_EQ(fine.mesh.triangles.size(), 24U - 2 * static_cast<std::size_t>(coarser.collapses));
 }
 
+TEST(RemeshRoot, AVertexMovesToTheMeanOfTheCircumcentresAround) {
+  // In a rectangle of 4 by 2, half a unit above the middle. The triangles over the long sides are obtuse there: the
+  // middles of these sides count, with areas 1 and 3; the others have circumcentres at (1.1875, 0) and (-1.1875, 0).
+  const TriangleMesh rectangle{{{-2, -1, 0}, {2, -1, 0}, {2, 1, 0}, {-2, 1, 0}, {0, 0.5, 0}},
+                               {{0, 1, 4}, {2, 4, 1}, {4, 2, 3}, {3, 0, 4}}};
+  const Plane plane;
+  RestoredTooth tooth{rectangle, 4, 0, 0, 0, 0};
+  RemeshRootOptions options = only_iterations(1);
+  options.longest = 10;
+  options.shortest = 1e-3;
+  remesh_root(tooth, plane.walk, plane.lengths, {}, 0, options);
+  ASSERT_EQ(tooth.mesh.vertices.size(), 5U);
+  EXPECT_LT((tooth.mesh.vertices[4] - Point(0, (1.0 - 3.0) / 8, 0)).norm(), 1e-12) << tooth.mesh.vertices[4];
+}
+
 TEST(RemeshRoot, RelaxingBringsAShakenLatticeBack) {
   const Plane plane;
   for (unsigned seed = 0; seed < 10; ++seed) {

@@ -184,20 +184,22 @@ struct Ball {
 
 TEST(Restore, AHoleOfTheCrownIsFilledAndNoRootGrowsIntoIt) {
   Ball ball;
-  // The hole: three corners, none on the base. A dual that grew a cone out of it is not followed.
-  const auto at_top = std::find_if(ball.crown.triangles.begin(), ball.crown.triangles.end(), [&](const Triangle& t) {
-    return std::all_of(t.begin(), t.end(),
-                       [&](int v) { return ball.crown.vertices[static_cast<std::size_t>(v)].z() > 0.8; });
-  });
-  ASSERT_NE(at_top, ball.crown.triangles.end());
-  const auto [a, b, c] = *at_top;
-  ball.crown.triangles.erase(at_top);
-  const auto tip = static_cast<std::int32_t>(ball.joining.sites.size());
-  ball.joining.sites.emplace_back(0, 0, 2);
-  for (const auto& [from, to] : {std::pair{a, b}, {b, c}, {c, a}}) ball.joining.triangles.push_back({from, to, tip});
+  const auto reaching = [&](std::vector<Triangle>& triangles, const std::vector<Point>& points, double up) {
+    const auto found = std::find_if(triangles.begin(), triangles.end(), [&](const Triangle& t) {
+      return std::all_of(t.begin(), t.end(), [&](int v) { return up * points[static_cast<std::size_t>(v)].z() > 0.8; });
+    });
+    const Triangle taken = *found;
+    triangles.erase(found);
+    return taken;
+  };
+  // A dual with a tube from the crown's hole to one in the root, six triangles around.
+  const auto [a, b, c] = reaching(ball.crown.triangles, ball.crown.vertices, 1);
+  const auto [p, q, r] = reaching(ball.joining.triangles, ball.joining.sites, -1);
+  for (const Triangle& t : {Triangle{a, b, p}, {b, r, p}, {b, c, r}, {c, q, r}, {c, a, q}, {a, p, q}})
+    ball.joining.triangles.push_back(t);
   const RestoredTooth tooth = restore_crown(ball.crown, ball.joining);
   test::expect_crown_kept(ball.crown, tooth);
-  EXPECT_EQ(tooth.holes_filled, 1);
+  EXPECT_EQ(tooth.holes_filled, 2);
   EXPECT_EQ(as_places(tooth.mesh), as_places(ball.whole));
 }
 
