@@ -10,7 +10,7 @@ packages=(
   libtorch-dev libgloo-dev libopenblas0-openmp libcgal-dev libeigen3-dev libboost-dev libgmp-dev libmpfr-dev
   libtbb-dev libnanoflann-dev libcli11-dev nlohmann-json3-dev libfmt-dev libpugixml-dev zlib1g-dev liblz4-dev pkg-config
   libpng-dev libssl-dev libgtest-dev
-  python3-numpy python3-scipy python3-open3d
+  python3-numpy python3-scipy python3-open3d python3-jsonschema
 )
 
 missing=()

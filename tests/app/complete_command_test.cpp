@@ -8,7 +8,11 @@
 
 #include <nlohmann/json.hpp>
 
+#include <array>
+#include <cstdint>
+#include <cstring>
 #include <fstream>
+#include <vector>
 
 namespace rhizodont {
 namespace {
@@ -30,6 +34,45 @@ class Complete : public test::Program {
 
   void write_bytes(const std::string& name, const std::string& bytes) const {
     std::ofstream(file(name), std::ios::binary) << bytes;
+  }
+
+  /// The GLB file, read as its specification says, holds this mesh: header, chunks, accessors, positions, indices.
+  void expect_in_glb(const std::string& name, const TriangleMesh& mesh) const {
+    const std::string bytes = test::read_all(file(name));
+    const auto number = [&](std::size_t place) {
+      std::uint32_t value = 0;
+      std::memcpy(&value, bytes.data() + place, 4);
+      return std::size_t{value};
+    };
+    ASSERT_GT(bytes.size(), 28U);
+    EXPECT_EQ(bytes.substr(0, 4), "glTF");
+    EXPECT_EQ(number(4), 2U);
+    EXPECT_EQ(number(8), bytes.size());
+    EXPECT_EQ(bytes.substr(16, 4), "JSON");
+    const auto json = nlohmann::json::parse(bytes.substr(20, number(12)));
+    const std::size_t data = 28 + number(12);
+    EXPECT_EQ(bytes.substr(data - 4, 4), std::string("BIN\0", 4));
+    ASSERT_EQ(number(data - 8), bytes.size() - data);
+    const auto& primitive = json["meshes"][0]["primitives"][0];
+    const auto place_of = [&](const nlohmann::json& accessor, std::size_t count, int component_type) {
+      const auto& described = json["accessors"][accessor.get<std::size_t>()];
+      EXPECT_EQ(described["count"], count);
+      EXPECT_EQ(described["componentType"], component_type);
+      const auto& view = json["bufferViews"][described["bufferView"].get<std::size_t>()];
+      return data + view.value("byteOffset", std::size_t{0}) + described.value("byteOffset", std::size_t{0});
+    };
+    const std::size_t positions = place_of(primitive["attributes"]["POSITION"], mesh.vertices.size(), 5126);
+    const std::size_t indices = place_of(primitive["indices"], 3 * mesh.triangles.size(), 5125);
+    ASSERT_LE(positions + 12 * mesh.vertices.size(), bytes.size());
+    ASSERT_LE(indices + 12 * mesh.triangles.size(), bytes.size());
+    // STL, which the mesh comes from, has no numbers of vertices: triangles are compared by their places, in order.
+    for (std::size_t k = 0; k < 3 * mesh.triangles.size(); ++k) {
+      const Point& p = mesh.vertices[static_cast<std::size_t>(mesh.triangles[k / 3][k % 3])];
+      std::array<float, 3> found{};
+      ASSERT_LT(number(indices + 4 * k), mesh.vertices.size());
+      std::memcpy(found.data(), bytes.data() + positions + 12 * number(indices + 4 * k), 12);
+      for (std::size_t i = 0; i < 3; ++i) ASSERT_EQ(found[i], static_cast<float>(p[static_cast<Eigen::Index>(i)])) << k;
+    }
   }
 
   /// Ends with exit 3, says `words` in one line and in the report, and writes no tooth.
@@ -66,7 +109,41 @@ TEST_F(Complete, OtherFormatsKeepTheCrownToo) {
     EXPECT_EQ(run("check " + crown + " " + name).code, 0) << name;
   }
   ASSERT_EQ(run("complete " + crown + " --fdi 34 --quiet -o tooth.glb").code, 0);
-  EXPECT_GT(fs::file_size(file("tooth.glb")), 10000U);
+  expect_in_glb("tooth.glb", load_mesh(file("tooth.stl")).mesh);
+}
+
+TEST_F(Complete, CandidatesDifferInTheirRootsAndKeepTheCrown) {
+  const std::string crown = "'" + sample("crown_34.ply").string() + "'";
+  const Outcome outcome = run("complete " + crown + " --fdi 34 --e 1 --candidates 3 -o tooth.ply --report report.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.error;
+  std::vector<double> lengths;
+  for (const std::string name : {"", "_2", "_3"}) {
+    SCOPED_TRACE(name);
+    EXPECT_EQ(run("check " + crown + " tooth" + name + ".ply").code, 0);
+    const auto report = nlohmann::json::parse(std::ifstream(file("report" + name + ".json")));
+    lengths.push_back(report["root"]["length_mm"]);
+    EXPECT_EQ(report["fdi"]["number"], 34);
+  }
+  EXPECT_FALSE(fs::exists(file("tooth_4.ply")));
+  const auto first = nlohmann::json::parse(std::ifstream(file("report.json")));
+  const auto& interval = first["root"]["interval"];
+  // The second and third have the ends of the first one's interval, as near as a mesh of this size ends where it
+  // should.
+  EXPECT_LT(lengths[1], lengths[0]);
+  EXPECT_GT(lengths[2], lengths[0]);
+  EXPECT_NEAR(lengths[1], interval["length_low_mm"].get<double>(), 0.2);
+  EXPECT_NEAR(lengths[2], interval["length_high_mm"].get<double>(), 0.2);
+  // Alone, the expected one is the same.
+  ASSERT_EQ(run("complete " + crown + " --fdi 34 --e 1 -o alone.ply").code, 0);
+  EXPECT_TRUE(test::read_all(file("alone.ply")) == test::read_all(file("tooth.ply")));
+}
+
+TEST_F(Complete, CandidatesThatCannotBeAreRefused) {
+  const std::string crown = "complete '" + sample("crown_34.ply").string() + "' --fdi 34 -o tooth.ply --candidates ";
+  expect_error(crown + "0", 2, "1 to 9");
+  expect_error(crown + "10", 2, "1 to 9");
+  expect_error(crown + "2 --root-length 14", 2, "ask for one of the two");
+  EXPECT_FALSE(fs::exists(file("tooth.ply")));
 }
 
 TEST_F(Complete, UnusableFilesAreRefused) {

@@ -179,6 +179,91 @@ TEST(Fusion, RemeshingThatWasGivenUpCountsNothing) {
   EXPECT_EQ(fused.remeshing.splits + fused.remeshing.collapses + fused.remeshing.flips + fused.remeshing.mended, 0);
 }
 
+TEST(Fusion, StepByStepNothingIsLostWhereOneStepAloneWouldBreakTheTooth) {
+  // Remeshed at once the tooth would cut itself: where only one attempt is allowed, it is left out. With patience the
+  // triangles about the place are left alone, and all others improved.
+  const FusedTooth hasty = fuse_with_folds(1, impatient());
+  EXPECT_EQ(hasty.warnings, std::vector<std::string>{"The root's triangles could not be improved."});
+  FuseOptions patient;
+  patient.other_growths.clear();
+  const FusedTooth fused = fuse_with_folds(1, patient);
+  EXPECT_TRUE(fused.warnings.empty());
+  EXPECT_GT(fused.remeshing.flips, 0);
+  EXPECT_GT(fused.remeshing.mended, 0);
+  EXPECT_FALSE(fused.transition.cuts_itself);
+}
+
+TEST(Fusion, ASeamThatCannotBeSmoothedWhollyIsSaid) {
+  FuseOptions options;
+  options.other_growths.clear();
+  const FusedTooth smooth = fuse_with_folds(0.5, options), folded = fuse_with_folds(2, options);
+  EXPECT_GE(smooth.transition.applied, 0.9);
+  EXPECT_TRUE(smooth.warnings.empty());
+  EXPECT_LT(folded.transition.applied, 0.9);
+  const auto percent = std::to_string(std::lround(100 * folded.transition.applied));
+  EXPECT_EQ(folded.warnings,
+            std::vector<std::string>{"The seam between crown and root was smoothed to " + percent + " % only."});
+}
+
+TEST(Fusion, WithoutFurtherAttemptsTheReasonOfTheLastIsTheError) {
+  FuseOptions once = impatient();
+  once.attempts = 1;
+  try {
+    fuse_with_folds(4, once);
+    FAIL() << "was joined";
+  } catch (const NoResultError& error) {
+    EXPECT_STREQ(error.what(), "The tooth cuts itself at the seam.");
+  }
+}
+
+/// The smallest angle of new triangles over what is wanted there.
+double least_share(const FusedTooth& fused) {
+  const TransitionOptions wanted;
+  const JoinedTooth& tooth = fused.tooth;
+  double least = 100;
+  for (auto t = static_cast<std::size_t>(tooth.crown_triangles); t < tooth.mesh.triangles.size(); ++t) {
+    const Triangle& corners = tooth.mesh.triangles[t];
+    const bool touches = *std::min_element(corners.begin(), corners.end()) < tooth.crown_vertices;
+    for (const double angle : triangle_angles(tooth.mesh, t))
+      least = std::min(least, angle * 180 / M_PI / (touches ? wanted.border_angle : wanted.inner_angle));
+  }
+  return least;
+}
+
+TEST(Fusion, OfSeveralGrowthsTheBestToothIsTaken) {
+  FuseOptions one;
+  one.other_growths.clear();
+  FuseOptions other = one;
+  other.edge_growth = 0.6;
+  const double first = least_share(fuse_with_folds(3, one)), second = least_share(fuse_with_folds(3, other));
+  ASSERT_LT(first, 1) << "else no other is tried";
+  one.other_growths = {0.6};
+  EXPECT_EQ(least_share(fuse_with_folds(3, one)), std::max(first, second));
+  other.other_growths = {0.9};
+  EXPECT_EQ(least_share(fuse_with_folds(3, other)), second >= 1 ? second : std::max(first, second));
+}
+
+TEST(Fusion, OptionsOutOfRange) {
+  const TriangleMesh crown = test::dome(2, 5), surface = test::sphere(3, 5);
+  const std::vector<std::function<void(FuseOptions&)>> faults{
+      [](FuseOptions& o) { o.edge_growth = 0; },     [](FuseOptions& o) { o.edge_shrinkage = -1; },
+      [](FuseOptions& o) { o.attempts = 0; },        [](FuseOptions& o) { o.remesh_attempts = 0; },
+      [](FuseOptions& o) { o.other_growths = {0}; }, [](FuseOptions& o) { o.transition.cut_rounds = 0; },
+      [](FuseOptions& o) { o.sites.spacing = 1; },   [](FuseOptions& o) { o.separation.epsilon = 0; }};
+  for (std::size_t i = 0; i < faults.size(); ++i) {
+    FuseOptions options;
+    faults[i](options);
+    EXPECT_THROW(fuse_crown_and_root(prepare_crown(crown), surface, Eigen::Vector3d::UnitZ(), options), UsageError)
+        << i;
+  }
+}
+
+TEST(Fusion, ASurfaceWithoutARootIsRefused) {
+  // Wholly inside of the crown's clearance: no vertex of it is root.
+  const TriangleMesh crown = test::dome(3, 5);
+  EXPECT_THROW(fuse_crown_and_root(prepare_crown(crown), test::sphere(2, 0.05), Eigen::Vector3d::UnitZ(), {}), Error);
+}
+
 TEST(Fusion, ARootThatIsClosedByItselfIsNotJoined) {
   const TriangleMesh crown = test::dome(2, 5);
   Joining joining;

@@ -112,6 +112,25 @@ TEST(CrownFit, TurnsAroundAPoleOfHundredsOfTriangles) {
   EXPECT_LT(farthest(surface, crown), 0.03);
 }
 
+TEST(CrownFit, IsUndoneWhereTheSurfaceWouldMeetItself) {
+  // A plate that faces up, under the ball: drawn onto it, the ball's upper half would go through the lower one.
+  TriangleMesh plate = test::grid(6);
+  for (Point& p : plate.vertices) p -= Point(3.1, 2.9, 2);
+  CrownFitOptions options;
+  options.reach = 10;
+  for (const int fading_rings : {0, 3}) {
+    options.fading_rings = fading_rings;
+    TriangleMesh surface = test::sphere(3, 1);
+    const TriangleMesh before = surface;
+    const CrownFit fit = fit_to_crown(surface, prepare_crown(plate), options);
+    EXPECT_TRUE(fit.undone);
+    EXPECT_EQ(fit.moved_vertices, 0);
+    EXPECT_EQ(fit.added_vertices, 0);
+    EXPECT_EQ(surface.vertices, before.vertices);
+    EXPECT_EQ(surface.triangles, before.triangles);
+  }
+}
+
 TEST(CrownFit, NeedsABorder) {
   TriangleMesh surface = test::sphere(2, radius);
   EXPECT_THROW(fit_to_crown(surface, prepare_crown(test::sphere(3, radius))), InputError);

@@ -4,8 +4,10 @@
 #include "io/io_test_tools.hpp"
 #include "mesh/test_meshes.hpp"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -173,6 +175,34 @@ TEST(GlbFormat, DoubleCoordinatesAreNotSquashedSilently) {
   EXPECT_THROW(save_mesh(folder.path() / "a.glb", file), UsageError);
 }
 
+// As a program writes it; formats that `save_mesh` does not write as plain text.
+std::string bytes_as(const std::string& name, const MeshFile& file) {
+  std::string points, polygons, connectivity, offsets;
+  for (const Point& p : file.mesh.vertices) points += fmt::format("{} {} {}\n", p.x(), p.y(), p.z());
+  for (const auto& [a, b, c] : file.mesh.triangles) {
+    polygons += fmt::format("3 {} {} {}\n", a, b, c);
+    connectivity += fmt::format("{} {} {}\n", a, b, c);
+    offsets += fmt::format("{} ", offsets.empty() ? 3 : 3 * (std::count(offsets.begin(), offsets.end(), ' ') + 1));
+  }
+  const std::size_t v = file.mesh.vertices.size(), t = file.mesh.triangles.size();
+  if (name.ends_with(".off")) return fmt::format("OFF\n{} {} 0\n", v, t) + points + polygons;
+  if (name.ends_with(".vtk"))
+    return fmt::format("# vtk DataFile Version 3.0\nball\nASCII\nDATASET POLYDATA\nPOINTS {} float\n", v) + points +
+           fmt::format("POLYGONS {} {}\n", t, 4 * t) + polygons;
+  if (name.ends_with(".vtp"))
+    return fmt::format(
+               "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+               "<PolyData><Piece NumberOfPoints=\"{}\" NumberOfPolys=\"{}\"><Points><DataArray type=\"Float32\" "
+               "NumberOfComponents=\"3\" format=\"ascii\">\n",
+               v, t) +
+           points + "</DataArray></Points><Polys><DataArray type=\"Int32\" Name=\"connectivity\" format=\"ascii\">\n" +
+           connectivity + "</DataArray><DataArray type=\"Int32\" Name=\"offsets\" format=\"ascii\">\n" + offsets +
+           "</DataArray></Polys></Piece></PolyData></VTKFile>\n";
+  const TemporaryFolder folder;
+  save_mesh(folder.path() / name, file);
+  return test::read_all(folder.path() / name);
+}
+
 // Damaged files of every format end in an InputError or a valid mesh, never in anything else.
 TEST(Files, RandomDamageIsSurvived) {
   const TemporaryFolder folder;
@@ -185,10 +215,15 @@ TEST(Files, RandomDamageIsSurvived) {
     return static_cast<std::size_t>(state >> 33) % below;
   };
   using Reader = MeshFile (*)(std::string_view);
-  for (const auto& [name, reader] :
-       {std::pair<const char*, Reader>{"a.ply", read_ply}, {"a.stl", read_stl}, {"a.obj", read_obj}}) {
-    save_mesh(folder.path() / name, file);
-    const std::string whole = test::read_all(folder.path() / name);
+  for (const auto& [name, reader] : {std::pair<const char*, Reader>{"a.ply", read_ply},
+                                     {"a.stl", read_stl},
+                                     {"a.obj", read_obj},
+                                     {"a.off", read_off},
+                                     {"a.vtp", read_vtp},
+                                     {"a.vtk", read_vtk}}) {
+    SCOPED_TRACE(name);
+    const std::string whole = bytes_as(name, file);
+    ASSERT_EQ(test::parse(reader, whole).mesh.triangles.size(), file.mesh.triangles.size()) << "undamaged";
     for (int trial = 0; trial < 300; ++trial) {
       std::string damaged = whole;
       for (std::size_t k = 0; k <= random(4); ++k) damaged[random(damaged.size())] = static_cast<char>(random(256));

@@ -84,7 +84,11 @@ TEST(AsBall, CutsAThinBridge) {
   const ScalarField field = [](const Point& p) { return larger(ball(p, Point(-4.0, 0.0, 0.0), 3.0), torus(p, 0.25)); };
   const Isosurface surface = as_ball(field, Point(-7.0, 0.0, 0.0), 0.4);
   EXPECT_TRUE(diagnose(surface.mesh).is_closed_solid());
+  EXPECT_GE(surface.relabelled_vertices, 1U) << "as it is the ring makes a tunnel";
   EXPECT_LE(surface.relabelled_vertices, 4U);
+  EXPECT_EQ(surface.euler_number, 2);
+  // The ball stays whole, and the ring is not filled: its hole would take 8 mm^3 and more.
+  EXPECT_NEAR(volume(surface.mesh), 4.0 / 3 * std::numbers::pi * 27, 4);
 }
 
 TEST(AsBall, RefusesToCloseAWideTunnel) {

@@ -55,12 +55,30 @@ TEST(SkirtBorder, KeepsEverythingWhereAllIsTooth) {
 }
 
 TEST(SkirtBorder, IgnoresSpecksAndIslands) {
-  Sheet sheet;
-  const double plain = sheet.kept_area(tooth_triangles(sheet.mesh, sheet.confidence));
-  sheet.set_around({2, 2, 0}, 0.25, 0.05F);   // a speck in the tooth
-  sheet.set_around({1, 1.4, 0}, 0.7, 0.02F);  // a larger island that no border reaches
-  sheet.set_around({5, 2, 0}, 0.7, 0.98F);    // an island of tooth in the skirt
-  EXPECT_NEAR(sheet.kept_area(tooth_triangles(sheet.mesh, sheet.confidence)), plain, 1e-9);
+  const Sheet plain;
+  const std::vector<bool> kept = tooth_triangles(plain.mesh, plain.confidence);
+  struct Island {
+    const char* what;
+    Point middle;
+    double radius;
+    float confidence;
+  };
+  const std::vector<Island> islands{{"a speck in the tooth", {2, 2, 0}, 0.25, 0.05F},
+                                    {"a larger island that no border reaches", {1, 1.4, 0}, 0.7, 0.02F},
+                                    {"an island of tooth in the skirt", {5, 2, 0}, 0.7, 0.98F}};
+  Sheet all;
+  for (const Island& island : islands) {
+    Sheet sheet;
+    sheet.set_around(island.middle, island.radius, island.confidence);
+    all.set_around(island.middle, island.radius, island.confidence);
+    ASSERT_NE(sheet.confidence, plain.confidence) << island.what;
+    EXPECT_EQ(tooth_triangles(sheet.mesh, sheet.confidence), kept) << island.what;
+  }
+  EXPECT_EQ(tooth_triangles(all.mesh, all.confidence), kept);
+  // What reaches the tooth's border is no island.
+  Sheet bay;
+  bay.set_around({4, 2, 0}, 1.2, 0.02F);
+  EXPECT_LT(bay.kept_area(tooth_triangles(bay.mesh, bay.confidence)), plain.kept_area(kept) - 1);
 }
 
 TEST(SkirtBorder, IsSmoothWhereConfidenceIsRagged) {

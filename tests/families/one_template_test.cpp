@@ -1,0 +1,184 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// The families on the one template that is kept beside this file, so that they are tested wherever the project is.
+#include "base/random_stream.hpp"
+#include "common/temporary_folder.hpp"
+#include "families/completion_sample.hpp"
+#include "families/crown_crop.hpp"
+#include "families/tooth_family.hpp"
+#include "mesh/diagnosis.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/self_intersection.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+#include "teeth/fdi.hpp"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+
+namespace rhizodont {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int molar = 13;  // the type of tooth 36
+
+MeshFile own_template() { return load_mesh(fs::path(RHIZODONT_SOURCE_DIR) / "tests/families/data/tooth_36.ply"); }
+
+// Mean dimensions, all different so that a mistaken column shows.
+constexpr double crown_height = 7.5, root_length = 14, mesiodistal = 11, buccolingual = 10.5;
+
+/// A folder as `load_tooth_families` reads it: the template at all sixteen places of two arches, upper ones turned
+/// over.
+class OneTemplate : public ::testing::Test {
+ protected:
+  test::TemporaryFolder folder;
+
+  void SetUp() override {
+    fs::create_directory(folder.path() / "templates");
+    for (int type = 0; type < tooth_type_count; ++type) write_template(type, own_template());
+    write_dimensions(tooth_type_count);
+  }
+
+  void write_template(int type, MeshFile file) const {
+    const double along = (type % 8 + 0.5) / 8 * std::numbers::pi / 2;  // from the front tooth to the last molar
+    const Eigen::Vector3d out(std::sin(along), 0, std::cos(along));
+    const Eigen::Vector3d up(0, type < 8 ? -1 : 1, 0);
+    Eigen::Matrix3d axes;  // the template's own have +z to the crown and +y to the cheek
+    axes << out.cross(up), out, up;
+    for (Point& p : file.mesh.vertices)
+      p = axes * p + Point(30 * out.x(), 0, 45 * out.z()) + (type < 8 ? 12 : -12) * up;
+    save_mesh(path_of(type), file);
+  }
+
+  fs::path path_of(int type) const {
+    return folder.path() / "templates" / ("tooth_" + std::to_string(fdi_of_type(type, false)) + ".ply");
+  }
+
+  void write_dimensions(int rows) const {
+    std::ofstream table(folder.path() / "anatomy.csv");
+    table << "tooth,fdi,overall_mm,crown_mm,root_mm,md_crown_mm,md_cervix_mm,bl_crown_mm,bl_cervix_mm\n";
+    for (int type = 0; type < rows; ++type)
+      table << "a tooth," << fdi_of_type(type, true) << '/' << fdi_of_type(type, false) << ",21.5," << crown_height
+            << ",mesial 13 distal " << root_length << ',' << mesiodistal << ",9," << buccolingual << ",9\n";
+  }
+
+  ToothFamilies load() const {
+    FamilyLoadOptions options;
+    options.types = {molar};
+    options.vertices = 1200;
+    return load_tooth_families(folder.path(), options);
+  }
+
+  std::string refusal() const {
+    try {
+      load();
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "nothing was refused";
+  }
+};
+
+TEST_F(OneTemplate, IsFoundToHaveTwoRootsAndAnUprightAxis) {
+  const ToothFamilies families = load();
+  const FamilyTemplate& tooth = families.templates[molar];
+  EXPECT_TRUE(diagnose(tooth.mesh).is_closed_solid());
+  EXPECT_EQ(diagnose(tooth.mesh).euler_number, 2);
+  EXPECT_NEAR(static_cast<double>(tooth.mesh.vertices.size()), 1200, 2);
+  ASSERT_EQ(tooth.roots.size(), 2U);
+  for (const TemplateRoot& root : tooth.roots) EXPECT_LT(tooth.mesh.vertices[root.apex].z(), root.branch_z - 1);
+  EXPECT_LT(tooth.furcation_z, -2);
+  EXPECT_GT(tooth.furcation_z, -8);
+  // Where the arch has put it does not show: the frame is the tooth's own.
+  const Eigen::AlignedBox3d before = bounding_box(own_template().mesh.vertices),
+                            after = bounding_box(tooth.mesh.vertices);
+  EXPECT_LT((before.sizes() - after.sizes()).cwiseAbs().maxCoeff(), 1.0);
+  EXPECT_NEAR(tooth.crown_height, after.max().z(), 1e-9);
+  EXPECT_NEAR(tooth.root_length, -after.min().z(), 1e-9);
+  EXPECT_TRUE(families.crown_models.empty());
+  EXPECT_TRUE(families.loans.empty()) << "no neighbour was loaded";
+}
+
+TEST_F(OneTemplate, TheTableIsReadByItsColumns) {
+  for (const ToothDimensions& d : load().dimensions) {
+    EXPECT_EQ(d.crown_height, crown_height);
+    EXPECT_EQ(d.root_length, root_length) << "of the longest root";
+    EXPECT_EQ(d.crown_mesiodistal, mesiodistal);
+    EXPECT_EQ(d.crown_buccolingual, buccolingual);
+  }
+}
+
+TEST_F(OneTemplate, TheMeanToothHasTheMeanDimensions) {
+  const SyntheticTooth tooth = mean_tooth(load(), molar);
+  Eigen::AlignedBox3d enamel;
+  for (std::size_t v = 0; v < tooth.crown.size(); ++v)
+    if (tooth.crown[v] == 1) enamel.extend(tooth.mesh.vertices[v]);
+  EXPECT_NEAR(tooth.crown_height, crown_height, 0.05 * crown_height);
+  EXPECT_NEAR(tooth.root_length, root_length, 0.05 * root_length);
+  EXPECT_NEAR(enamel.sizes().x(), mesiodistal, 0.05 * mesiodistal);
+  EXPECT_NEAR(enamel.sizes().y(), buccolingual, 0.05 * buccolingual);
+}
+
+TEST_F(OneTemplate, GrowsSoundTeethThatDifferAndRepeat) {
+  const ToothFamilies families = load();
+  std::vector<std::vector<Point>> seen;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    SCOPED_TRACE(seed);
+    const SyntheticTooth tooth = generate_tooth(families, molar, seed);
+    EXPECT_TRUE(diagnose(tooth.mesh).is_closed_solid());
+    EXPECT_EQ(diagnose(tooth.mesh).euler_number, 2);
+    EXPECT_TRUE(self_intersecting_triangles(tooth.mesh).empty());
+    EXPECT_EQ(tooth.apices.size(), 2U);
+    EXPECT_DOUBLE_EQ(tooth.root_length, -bounding_box(tooth.mesh.vertices).min().z());
+    EXPECT_EQ(generate_tooth(families, molar, seed).mesh.vertices, tooth.mesh.vertices);
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), tooth.mesh.vertices), 0);
+    seen.push_back(tooth.mesh.vertices);
+    RandomStream random(seed);
+    const Diagnosis crop = diagnose(draw_cropped_crown(tooth, 0.3, 0.5, random).mesh);
+    EXPECT_TRUE(crop.is_oriented_manifold());
+    EXPECT_EQ(crop.border_loop_count, 1);
+    EXPECT_EQ(crop.euler_number, 1);
+  }
+}
+
+TEST_F(OneTemplate, MakesSamplesToTrainWith) {
+  CompletionSampleOptions options;
+  options.type = molar;
+  const ToothFamilies families = load();
+  const CompletionSample sample = make_completion_sample(families, 5, options);
+  EXPECT_EQ(sample.input.size(), 3U * 1024);
+  EXPECT_EQ(sample.target.size(), 3U * 4096);
+  EXPECT_EQ(sample.type, molar);
+  EXPECT_TRUE(std::all_of(sample.target.begin(), sample.target.end(), [](float x) { return std::isfinite(x); }));
+  EXPECT_EQ(make_completion_sample(families, 5, options).target, sample.target);
+  EXPECT_NE(make_completion_sample(families, 6, options).target, sample.target);
+}
+
+TEST_F(OneTemplate, WhatWasNotLoadedOrIsNoTypeIsRefused) {
+  const ToothFamilies families = load();
+  EXPECT_THROW(generate_tooth(families, 12, 1), UsageError);
+  EXPECT_THROW(generate_tooth(families, tooth_type_count, 1), UsageError);
+  EXPECT_THROW(generate_tooth(families, -1, 1), UsageError);
+}
+
+TEST_F(OneTemplate, DamagedFoldersAreRefusedWithTheReason) {
+  write_dimensions(tooth_type_count - 1);
+  EXPECT_NE(refusal().find("one row for each of the 16 teeth"), std::string::npos) << refusal();
+  write_dimensions(tooth_type_count);
+  MeshFile open = own_template();
+  open.mesh.triangles.resize(open.mesh.triangles.size() / 2);
+  write_template(molar, open);
+  EXPECT_NE(refusal(), "nothing was refused");
+  fs::remove(path_of(molar));
+  EXPECT_NE(refusal().find("tooth_36.ply"), std::string::npos) << refusal();
+}
+
+}  // namespace
+}  // namespace rhizodont
