@@ -3,8 +3,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 # Trains completion networks of different sizes, each for as much processor time, and prints what each has learned by
-# then as rows of a table: error on held-out generated teeth. The learning rate falls to its end within each run. A
-# variant whose row is in the folder already is not run again.
+# then as rows of a table: error of the best weights on held-out generated teeth. The learning rate falls to its end
+# within each run. A variant whose row is in the folder already is not run again.
 # usage: architecture_study.sh DATA FOLDER [CPU_MINUTES=20]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -37,7 +37,9 @@ while read -r width blocks queries points; do
     each=$(awk "BEGIN { print ($longer - $short) / 640 }")
     samples=$(awk "BEGIN { print int($minutes * 60 / $each / 16) * 16 }")
     train "$name" "$samples" "${shape[@]}" > /dev/null
-    read -r tooth root <<< "$(sed -n 's/.*validation at .*: tooth \([0-9.]*\) mm, root \([0-9.]*\) mm.*/\1 \2/p' "$name.log" | tail -1)"
+    figures=$(python3 scripts/weight_notes.py "$name/best.safetensors" validation.tooth_chamfer_l1_mm \
+      validation.root_chamfer_l1_mm)
+    read -r tooth root <<< "$figures"
     # A checkpoint holds each parameter four times in single precision.
     parameters=$(stat -c %s "$name/checkpoint.safetensors" | awk '{ printf "%.1f", $1 / 16e6 }')
     awk "BEGIN { printf \"| $width | $blocks | $queries x $points | $parameters | $samples | %.0f | $root | $tooth |\n\", 1000 * $each }" > "$name.row"

@@ -12,4 +12,6 @@ git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
 /usr/bin/python3 scripts/check_rooms.py
 cmake -S . -B build -G Ninja -DRHIZODONT_WERROR=ON -DRHIZODONT_TESTS=ON
 cmake --build build
-ctest --test-dir build --output-on-failure --no-tests=error -j 2
+rm -rf build/test_results
+GTEST_OUTPUT="xml:$PWD/build/test_results/" ctest --test-dir build --output-on-failure --no-tests=error -j 2
+/usr/bin/python3 scripts/check_skipped.py build/test_results

@@ -102,8 +102,9 @@ void fit(const std::filesystem::path& data, const std::filesystem::path& file, i
   fmt::print("{} panoramas\n", panoramas.labels.size());
   ClassifierTrainingOptions options;
   options.steps = steps;
-  options.log = [](const std::string& line) {
-    fmt::print("{}\n", line);
+  options.progress = [&](const TrainingProgress& progress) {
+    fmt::print("step {} of {}, loss {:.4f}, {:.0f} panoramas/s\n", progress.steps, options.steps, progress.loss,
+               progress.samples_per_second);
     std::fflush(stdout);
   };
   TensorFile weights = train_classifier(panoramas, options);

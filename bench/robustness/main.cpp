@@ -127,7 +127,7 @@ class Trial {
     step.value = value;
     for (int type = 0; type < tooth_type_count; ++type)
       for (std::uint64_t i = 0; i < teeth_per_type_; ++i) {
-        const std::uint64_t seed = validation_seed_offset + 7000000 + i;
+        const std::uint64_t seed = first_validation_sample + 7000000 + i;
         const SyntheticTooth tooth = generate_tooth(families_, type, seed, scan.variation);
         try {
           if (const auto crown = scanned(tooth, scan, seed))

@@ -67,7 +67,7 @@ void row(const ToothFamilies& families, const Unknown& unknown, std::uint64_t te
   double teeth = 0, length = 0, apex = 0, root = 0, angle = 0, chamfer = 0, f_score = 0;
   for (int type = 0; type < tooth_type_count; ++type)
     for (std::uint64_t i = 0; i < teeth_per_type; ++i) {
-      const std::uint64_t seed = validation_seed_offset + 8000000 + i;
+      const std::uint64_t seed = first_validation_sample + 8000000 + i;
       const SyntheticTooth truth = generate_tooth(families, type, seed);
       ToothVariation variation;
       unknown.forget(variation);

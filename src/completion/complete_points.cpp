@@ -5,7 +5,7 @@
 // 3.3, with the network in millimetres of the crown's own frame.
 #include "completion/complete_points.hpp"
 
-#include "learning/training_sample.hpp"
+#include "learning/completion_shape.hpp"
 #include "mesh/sampling.hpp"
 #include "teeth/fdi.hpp"
 

@@ -68,10 +68,6 @@ std::vector<SurfacePoint> sample_evenly(const TriangleMesh& mesh, std::size_t co
   return points;
 }
 
-void append(std::vector<float>& values, const Eigen::Vector3d& p) {
-  for (int i = 0; i < 3; ++i) values.push_back(static_cast<float>(p[i]));
-}
-
 }  // namespace
 
 CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn) {
@@ -88,42 +84,43 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
   require_in_range(options);
   RandomStream random(seed, 100);
   CompletionSample sample;
-  sample.type = static_cast<int>(random.index(tooth_type_count));
-  if (options.type >= 0) sample.type = options.type;
-  const SyntheticTooth tooth = generate_tooth(families, sample.type, random.bits());
+  sample.pair.type = static_cast<int>(random.index(tooth_type_count));
+  if (options.type >= 0) sample.pair.type = options.type;
+  const SyntheticTooth tooth = generate_tooth(families, sample.pair.type, random.bits());
   CroppedCrown crop = draw_cropped_crown(tooth, options.paper_crop_share, options.gap_probability, random);
   if (random.chance(options.skirt_probability)) add_skirt_remains(crop.mesh, options.skirt_mm, random);
   const bool lost = random.chance(options.lost_turn_share);
   const double jitter = lost ? std::numbers::pi : options.rotation_jitter_radians;
   sample.frame = frame_of_crop(crop.mesh, random.uniform(-jitter, jitter) - tooth.crown_turn);
 
-  sample.input.reserve(3 * options.input_points);
+  CompletionTrainingSample& pair = sample.pair;
+  pair.input.reserve(options.input_points);
   const double noise = options.scanner_noise_mm;
   for (const SurfacePoint& s : sample_evenly(crop.mesh, options.input_points, random)) {
     const Point p = s.mix(crop.mesh, crop.mesh.vertices);
     const double x = random.normal(), y = random.normal(), z = random.normal();
-    append(sample.input, sample.frame.to_canonical(p + noise * Eigen::Vector3d(x, y, z)));
+    pair.input.push_back(sample.frame.to_canonical(p + noise * Eigen::Vector3d(x, y, z)).cast<float>());
   }
 
   const std::vector<Eigen::Vector3d> normals = vertex_normals(tooth.mesh);
-  sample.target.reserve(3 * options.target_points);
-  sample.target_normals.reserve(3 * options.target_points);
+  pair.target.reserve(options.target_points);
+  pair.normals.reserve(options.target_points);
   for (const SurfacePoint& s : sample_evenly(tooth.mesh, options.target_points, random)) {
     const Point p = s.mix(tooth.mesh, tooth.mesh.vertices);
     const Eigen::Vector3d normal = s.mix(tooth.mesh, normals).normalized();
-    append(sample.target, sample.frame.to_canonical(p));
-    append(sample.target_normals, sample.frame.direction_to_canonical(normal));
-    sample.target_root.push_back(p.z() > crop.line.height(tooth.junction, p.x(), p.y()) ? 0 : 1);
+    pair.target.push_back(sample.frame.to_canonical(p).cast<float>());
+    pair.normals.push_back(sample.frame.direction_to_canonical(normal).cast<float>());
+    pair.is_root.push_back(p.z() > crop.line.height(tooth.junction, p.x(), p.y()) ? 0 : 1);
     sample.target_cement.push_back(p.z() > tooth.junction(p.x(), p.y()) ? 0 : 1);
   }
 
   if (tooth.own_template) {
-    sample.matched.reserve(3 * normals.size());
-    sample.matched_normals.reserve(3 * normals.size());
+    pair.matched.reserve(normals.size());
+    pair.matched_normals.reserve(normals.size());
     for (std::size_t v = 0; v < normals.size(); ++v) {
-      append(sample.matched, sample.frame.to_canonical(tooth.mesh.vertices[v]));
-      append(sample.matched_normals, sample.frame.direction_to_canonical(normals[v]));
-      sample.matched_root.push_back(tooth.crown[v] != 0 ? 0 : 1);
+      pair.matched.push_back(sample.frame.to_canonical(tooth.mesh.vertices[v]).cast<float>());
+      pair.matched_normals.push_back(sample.frame.direction_to_canonical(normals[v]).cast<float>());
+      pair.matched_root.push_back(tooth.crown[v] != 0 ? 0 : 1);
     }
   }
 
@@ -141,8 +138,9 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
   sample.growth_axis = sample.frame.direction_to_canonical(tooth.growth_axis);
   const double error = options.form_axis_error_degrees * std::numbers::pi / 180 * (lost ? 3 : 1);
   const double error_x = random.normal(0, error), error_y = random.normal(0, error);
-  sample.form_axis =
+  const Eigen::Vector2d form_axis =
       sample.frame.direction_to_canonical(tooth.crown_axis).head<2>() + Eigen::Vector2d(error_x, error_y);
+  pair.form_axis = form_axis.cast<float>();
   sample.junction = tooth.junction;
   sample.gum_line = crop.line;
   sample.furcation_z = tooth.furcation_z;

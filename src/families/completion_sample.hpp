@@ -4,6 +4,8 @@
 
 #include "families/crown_crop.hpp"
 #include "families/tooth_family.hpp"
+#include "learning/completion_training_sample.hpp"
+#include "learning/training_options.hpp"
 #include "teeth/frame.hpp"
 
 #include <cstddef>
@@ -30,22 +32,16 @@ struct CompletionSampleOptions {
                                           ///< bench_families finds it; three times as much where the turn is lost
 };
 
-/// One training pair: what inference would see of a crown, and the tooth it belongs to.
-/// All coordinates are canonical: growth axis +z (root to crown), left side, origin at the crown's area-weighted
-/// centroid, unit 12 mm. Point arrays are row-major (x, y, z of point 0, x, y, z of point 1, ...).
+/// A training pair and what is known of its tooth beside it. All coordinates are canonical: growth axis +z (root to
+/// crown), left side, origin at the crown's area-weighted centroid, unit 12 mm.
 struct CompletionSample {
-  std::vector<float> input;                 ///< input_points x 3, on the cropped crown, in random order
-  std::vector<float> target;                ///< target_points x 3, uniform by area on the whole tooth, in random order
-  std::vector<float> target_normals;        ///< target_points x 3, unit length, outward
-  std::vector<std::uint8_t> target_root;    ///< target_points; 1 where the point lies outside the crop (not seen)
-  std::vector<std::uint8_t> target_cement;  ///< target_points; 1 where the point lies on cementum (below the junction)
-  /// The generated tooth's vertices, n x 3, if it was grown from its type's own template: the same row is the same
-  /// place on all such teeth of a type. Empty for teeth from a borrowed template.
-  std::vector<float> matched;
-  std::vector<float> matched_normals;      ///< n x 3, unit length, outward
-  std::vector<std::uint8_t> matched_root;  ///< n; 1 on cementum, 0 on enamel
-  int type = 0;                            ///< tooth type 0..15
-  CanonicalFrame frame;                    ///< from the generated tooth's millimetres to the canonical pose
+  /// What the network is trained on: points in random order; root is what lies outside the crop, of the corresponding
+  /// points what is cementum. These are the generated tooth's vertices, if it was grown from its type's own template,
+  /// else there are none. The axis of the form is the growth axis with the error of laying the type's mean crown on the
+  /// crop.
+  CompletionTrainingSample pair;
+  std::vector<std::uint8_t> target_cement;  ///< per target point: 1 on cementum (below the junction), 0 on enamel
+  CanonicalFrame frame;                     ///< from the generated tooth's millimetres to the canonical pose
   double root_length_mm = 0;   ///< lowest border point of the crop to the furthest apex along z, millimetres
   double crown_height_mm = 0;  ///< extent of the crop along z, millimetres
   std::vector<Point> apices;   ///< root tips in canonical coordinates, 1 to 3
@@ -54,14 +50,12 @@ struct CompletionSample {
   JunctionHeight junction;                 ///< cemento-enamel junction in the generated tooth's millimetres
   GumLine gum_line;                        ///< where the crown was cut, in the generated tooth's millimetres
   double furcation_z = 0;                  ///< height of the highest branching there; 0 for a single root
-  /// x and y of the growth axis as laying the type's mean crown on the crop would show it: with its error.
-  Eigen::Vector2d form_axis = Eigen::Vector2d::Zero();
 };
 
 /// Makes training sample number `seed`: a random tooth of a random type, cropped and disturbed like a scan.
 /// The frame comes from the cropped crown alone, as at inference; its rotation about z is the generator's own plus a
 /// jitter that stands for the error of registration, or any rotation where the registration is lost. Depends on the
-/// seed and options alone, so that any thread may make any sample; seeds below `validation_seed_offset` are for
+/// seed and options alone, so that any thread may make any sample; seeds below `first_validation_sample` are for
 /// training, the others for validation. Throws NoResultError if no sound tooth came out of 20 draws (not seen in
 /// practice), UsageError for bad options.
 CompletionSample make_completion_sample(const ToothFamilies& families, std::uint64_t seed,
@@ -70,8 +64,5 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
 /// Axis and centre from an open crown in the generator's own frame; about the axis that frame, turned by `turn`
 /// radians.
 CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn);
-
-/// Samples with seeds from here on are never trained on.
-inline constexpr std::uint64_t validation_seed_offset = std::uint64_t{1} << 40;
 
 }  // namespace rhizodont

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "learning/completion_shape.hpp"
 #include "learning/layers.hpp"
-#include "learning/train_completion.hpp"
 
 namespace rhizodont {
 
@@ -17,7 +17,7 @@ namespace rhizodont {
 struct CrownBatch {
   torch::Tensor points;           ///< float, B x input_points x 3
   torch::Tensor types;            ///< int64, B; 0..15 or unknown_type
-  torch::Tensor form_axes;        ///< float, B x 2: TrainingSample::form_axis
+  torch::Tensor form_axes;        ///< float, B x 2: CompletionTrainingSample::form_axis
   torch::Tensor near_input;       ///< int32, B x input_points x 16: among the input
   torch::Tensor near_1_of_input;  ///< int32, B x centres_1 x 16: of the first centres, among the input
   torch::Tensor near_1;           ///< int32, B x centres_1 x 16: among the first centres

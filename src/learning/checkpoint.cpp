@@ -21,7 +21,27 @@ void require_training_folder(const std::filesystem::path& folder, bool resume) {
   }
 }
 
-void store_progress(const std::vector<TrainedTensor>& tensors, const TrainingProgress& progress, TensorFile& file) {
+TensorFile weights_of_run(const std::filesystem::path& folder, TensorType type,
+                          const std::map<std::string, std::string>& notes) {
+  TensorFile file;
+  if (std::filesystem::exists(folder / best_name)) {
+    file = read_safetensors(folder / best_name);
+  } else if (std::filesystem::exists(folder / checkpoint_name)) {
+    const TensorFile checkpoint = read_safetensors(folder / checkpoint_name);
+    const std::string prefix = "average.";
+    for (const auto& [name, tensor] : checkpoint.tensors) {
+      if (name.starts_with(prefix))
+        file.tensors[name.substr(prefix.size())] = store_floats(load_floats(tensor), tensor.shape, type);
+    }
+    file.metadata = checkpoint.metadata;
+  } else {
+    throw InputError("The folder " + folder.string() + " has no weights to export.");
+  }
+  for (const auto& [key, text] : notes) file.metadata[key] = text;
+  return file;
+}
+
+void store_progress(const std::vector<TrainedTensor>& tensors, const CheckpointProgress& progress, TensorFile& file) {
   for (const TrainedTensor& tensor : tensors) {
     file.tensors["value." + tensor.name] = store_tensor(tensor.value, TensorType::float32);
     file.tensors["mean." + tensor.name] = store_tensor(tensor.mean, TensorType::float32);
@@ -33,8 +53,8 @@ void store_progress(const std::vector<TrainedTensor>& tensors, const TrainingPro
   file.metadata["training.best"] = std::to_string(progress.best);
 }
 
-TrainingProgress load_progress(const TensorFile& file, const std::map<std::string, std::string>& wanted,
-                               const std::filesystem::path& folder, std::vector<TrainedTensor>& tensors) {
+CheckpointProgress load_progress(const TensorFile& file, const std::map<std::string, std::string>& wanted,
+                                 const std::filesystem::path& folder, std::vector<TrainedTensor>& tensors) {
   for (const auto& [key, value] : wanted) {
     const auto found = file.metadata.find(key);
     if (found == file.metadata.end() || found->second != value)

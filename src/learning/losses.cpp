@@ -61,7 +61,8 @@ torch::Tensor patch_chamfer(const torch::Tensor& predicted, const torch::Tensor&
   return 0.5 * (torch::sqrt(forth) + torch::sqrt(back)).mean({1, 2});
 }
 
-LossTerms training_loss(const Prediction& prediction, const TargetBatch& target, const TrainingOptions& options) {
+LossTerms completion_loss(const Prediction& prediction, const TargetBatch& target,
+                          const CompletionTrainingOptions& options) {
   const torch::Tensor weights = 1 + (options.root_weight - 1) * target.root;
   const torch::Tensor matched_weights = 1 + (options.root_weight - 1) * target.matched_root;
   const torch::Tensor is_matched = target.is_matched, is_free = 1 - is_matched;

@@ -7,6 +7,7 @@
 #include <torch/torch.h>
 
 #include "learning/adapointr.hpp"
+#include "learning/train_completion.hpp"
 
 namespace rhizodont {
 
@@ -61,6 +62,7 @@ struct LossTerms {
 /// surface as its optimum, smooth and evenly covered. The Chamfer distance does the rest: samples without
 /// correspondence, and a share of `chamfer_weight` of the others. The expected distance s of a point that is r off
 /// costs r / s + log s, least on average where s is the mean of r (the likelihood of an exponential distribution).
-LossTerms training_loss(const Prediction& prediction, const TargetBatch& target, const TrainingOptions& options);
+LossTerms completion_loss(const Prediction& prediction, const TargetBatch& target,
+                          const CompletionTrainingOptions& options);
 
 }  // namespace rhizodont

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "learning/train_completion.hpp"
+#include "learning/training_options.hpp"
 
 namespace rhizodont {
 

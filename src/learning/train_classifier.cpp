@@ -11,9 +11,9 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
+#include "base/option_range.hpp"
 #include "learning/threads.hpp"
 #include "learning/weights.hpp"
 #include "rhizodont/error.hpp"
@@ -183,10 +183,17 @@ Batch varied(torch::Tensor x, torch::Tensor labels, int classes) {
 }
 
 void check(const LabelledPanoramas& samples, const ClassifierTrainingOptions& o) {
-  const bool in_range = o.steps >= 10 && o.batch >= 2 && o.learning_rate > 0 && o.weight_decay >= 0 &&
-                        o.label_smoothing >= 0 && o.label_smoothing < 1 && o.dropout >= 0 && o.dropout < 1 &&
-                        o.width >= 1 && o.width <= 256 && o.classes >= 3 && o.classes % 2 == 1 && o.threads >= 1;
-  if (!in_range) throw UsageError("A training option is out of range.");
+  require_ranges("training", {{"steps", o.steps, OptionRange::at_least(10)},
+                              {"batch", o.batch, OptionRange::at_least(2)},
+                              {"learning_rate", o.learning_rate, OptionRange::above(0)},
+                              {"weight_decay", o.weight_decay, OptionRange::at_least(0)},
+                              {"label_smoothing", o.label_smoothing, OptionRange::at_least(0).below(1)},
+                              {"dropout", o.dropout, OptionRange::at_least(0).below(1)},
+                              {"width", o.width, OptionRange::at_least(1).at_most(256)},
+                              {"classes", o.classes, OptionRange::at_least(3)},
+                              {"threads", o.threads, OptionRange::at_least(1)},
+                              {"report_steps", o.report_steps, OptionRange::at_least(1)}});
+  if (o.classes % 2 == 0) throw UsageError("The option classes of training must be odd.");
   const std::size_t each = samples.channels * samples.rows * samples.columns;
   const bool fits = samples.channels == 5 && samples.rows % 4 == 0 && samples.columns % 4 == 0 && each > 0 &&
                     samples.labels.size() >= 2 && samples.values.size() == samples.labels.size() * each &&
@@ -236,12 +243,15 @@ TensorFile train_classifier(const LabelledPanoramas& samples, const ClassifierTr
     const double now = loss.item<double>();
     if (!std::isfinite(now)) throw NoResultError("Training came to a loss that is no number.");
     running = step == 0 ? now : 0.98 * running + 0.02 * now;
-    if (options.log && ((step + 1) % 100 == 0 || step + 1 == options.steps)) {
-      char line[100];
+    if (options.progress && ((step + 1) % options.report_steps == 0 || step + 1 == options.steps)) {
       const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-      std::snprintf(line, sizeof line, "step %d of %d, loss %.4f, %.0f s", step + 1, options.steps, running,
-                    taken.count());
-      options.log(line);
+      TrainingProgress progress;
+      progress.steps = static_cast<std::uint64_t>(step) + 1;
+      progress.samples = progress.steps * static_cast<std::uint64_t>(options.batch);
+      progress.loss = running;
+      progress.learning_rate = rate_at(step, options);
+      progress.samples_per_second = static_cast<double>(progress.samples) / std::max(taken.count(), 1e-9);
+      options.progress(progress);
     }
   }
   return folded(net);

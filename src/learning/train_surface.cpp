@@ -1,13 +1,10 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 //
-// Training of surface networks (N. Sharp et al., DiffusionNet, 2022). Learning rate: linear warm-up and cosine decay
-// (Loshchilov, Hutter: SGDR, 2017). Each thread takes its share of a batch; gradients are added in a fixed order.
+// Training of surface networks (N. Sharp et al., DiffusionNet, 2022).
 #include "learning/train_surface.hpp"
 
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <future>
 #include <map>
 #include <numbers>
@@ -16,48 +13,19 @@
 #include "base/option_range.hpp"
 #include "learning/checkpoint.hpp"
 #include "learning/diffusion_net.hpp"
-#include "learning/optimiser.hpp"
-#include "learning/safetensors.hpp"
 #include "learning/threads.hpp"
-#include "learning/training_sample.hpp"
-#include "learning/weights.hpp"
+#include "learning/training_loop.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double minutes_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count() / 60; }
-
 void require_in_range(const SurfaceTrainingOptions& options) {
   check_surface_shape(options.shape);
-  require_ranges("training", {{"batch", options.batch, OptionRange::at_least(1)},
-                              {"threads", options.threads, OptionRange::at_least(1).at_most(options.batch)},
-                              {"samples", options.samples, OptionRange::at_least(1)},
-                              {"pool", options.pool, OptionRange::at_least(1).below(first_validation_sample)},
-                              {"hours", options.hours, OptionRange::at_least(0)},
-                              {"learning_rate", options.learning_rate, OptionRange::above(0)},
-                              {"lowest_rate", options.lowest_rate, share_range},
-                              {"warm_up", options.warm_up, OptionRange::at_least(0)},
-                              {"weight_decay", options.weight_decay, OptionRange::at_least(0)},
-                              {"gradient_clip", options.gradient_clip, OptionRange::above(0)},
-                              {"average_decay", options.average_decay, share_range},
+  require_in_range(options.loop);
+  require_ranges("training", {{"pool", options.pool, OptionRange::at_least(1).below(first_validation_sample)},
                               {"tilt_radians", options.tilt_radians, OptionRange::at_least(0)},
-                              {"scale_deviation", options.scale_deviation, OptionRange::at_least(0)},
-                              {"validation_samples", options.validation_samples, OptionRange::at_least(0)},
-                              {"validation_minutes", options.validation_minutes, OptionRange::at_least(0)},
-                              {"checkpoint_minutes", options.checkpoint_minutes, OptionRange::at_least(0)},
-                              {"log_steps", options.log_steps, OptionRange::at_least(1)}});
-  if (options.batch % options.threads != 0) throw UsageError("The batch must be a multiple of the threads.");
-}
-
-double learning_rate(const SurfaceTrainingOptions& o, std::uint64_t step) {
-  const auto now = static_cast<double>(step), warm_up = static_cast<double>(o.warm_up);
-  if (now < warm_up) return o.learning_rate * (now + 1) / warm_up;
-  const double last = static_cast<double>(o.samples) / o.batch;
-  const double progress = std::clamp((now - warm_up) / std::max(last - warm_up, 1.0), 0.0, 1.0);
-  return o.learning_rate * (o.lowest_rate + (1 - o.lowest_rate) * 0.5 * (1 + std::cos(std::numbers::pi * progress)));
+                              {"scale_deviation", options.scale_deviation, OptionRange::at_least(0)}});
 }
 
 /// Random numbers that depend on seed and sample alone, and not on the standard library's distributions.
@@ -76,7 +44,7 @@ class Draw {
 
 /// The surface turned about z, tilted and scaled a little: operators and all other features stay as they are.
 SurfaceTensors turned(const SurfaceTensors& surface, const SurfaceTrainingOptions& o, std::uint64_t sample) {
-  Draw draw(o.seed, sample);
+  Draw draw(o.loop.seed, sample);
   const double angle = 2 * std::numbers::pi * draw.uniform(), c = std::cos(angle), s = std::sin(angle);
   const double a = o.tilt_radians * draw.normal(), b = o.tilt_radians * draw.normal();
   const double scale = std::exp(o.scale_deviation * draw.normal());
@@ -160,190 +128,90 @@ class Pool {
   std::map<std::uint64_t, std::future<SurfaceSample>> coming_;
 };
 
-class SurfaceTrainer {
- public:
-  SurfaceTrainer(const SurfaceProvider& provider, const SurfaceTrainingOptions& options);
-  SurfaceTrainingResult run();
+/// What the loop's functions work on.
+struct SurfaceTraining {
+  SurfaceTraining(const SurfaceProvider& the_provider, const SurfaceTrainingOptions& the_options)
+      : provider(the_provider), options(the_options), pool(the_provider, the_options.pool, 4) {
+    torch::manual_seed(options.loop.seed);
+    network = DiffusionNet(options.shape);
+    parameters = network->parameters();
+  }
 
- private:
-  struct Share {
-    std::vector<torch::Tensor> gradients;
-    double loss = 0;
-  };
-  Share work(std::uint64_t first, const std::vector<SurfaceTensors>& surfaces) const;
-  double step();
-  void validate();
-  void log(const std::string& line) const;
-  void save_checkpoint() const;
-  bool load_checkpoint();
+  void prepare(std::uint64_t first, int count);
+  TrainingShare share(std::uint64_t first, int count);
+  Validation validate();
 
-  const SurfaceProvider& provider_;
-  const SurfaceTrainingOptions& options_;
-  mutable DiffusionNet network_;
-  std::vector<torch::Tensor> parameters_;
-  std::vector<TrainedTensor> tensors_;
-  Pool pool_;
-  std::vector<SurfaceTensors> held_out_;
-  SurfaceTrainingResult result_;
+  const SurfaceProvider& provider;
+  const SurfaceTrainingOptions& options;
+  DiffusionNet network{nullptr};
+  std::vector<torch::Tensor> parameters;
+  Pool pool;
+  std::uint64_t first_of_batch = 0;
+  std::vector<SurfaceTensors> batch;  ///< samples from `first_of_batch` on
+  std::vector<SurfaceTensors> held_out;
+  SurfaceFigures best{.intersection = -1};  ///< of the validations so far
 };
 
-SurfaceTrainer::SurfaceTrainer(const SurfaceProvider& provider, const SurfaceTrainingOptions& options)
-    : provider_(provider), options_(options), network_(nullptr), pool_(provider, options.pool, 4) {
-  torch::manual_seed(options.seed);
-  network_ = DiffusionNet(options.shape);
-  parameters_ = network_->parameters();
-  tensors_ = trained_tensors(*network_);
-  result_.best.intersection = -1;
-  if (options.resume) load_checkpoint();
+void SurfaceTraining::prepare(std::uint64_t first, int count) {
+  first_of_batch = first;
+  batch.clear();
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(count); ++i) batch.push_back(pool[first + i]);
 }
 
-void SurfaceTrainer::log(const std::string& line) const {
-  if (options_.log) options_.log(line);
-}
-
-SurfaceTrainer::Share SurfaceTrainer::work(std::uint64_t first, const std::vector<SurfaceTensors>& surfaces) const {
-  const TensorThreads one_thread(1);  // counts per thread: this may be a fresh one
-  Share share;
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const SurfaceTensors surface = turned(surfaces[i], options_, first + i);
-    const torch::Tensor loss = loss_of(network_->forward(surface), surface);
-    const auto gradients = torch::autograd::grad({loss}, parameters_);
+TrainingShare SurfaceTraining::share(std::uint64_t first, int count) {
+  TrainingShare share;
+  for (std::uint64_t sample = first; sample < first + static_cast<std::uint64_t>(count); ++sample) {
+    const SurfaceTensors surface = turned(batch[sample - first_of_batch], options, sample);
+    const torch::Tensor loss = loss_of(network->forward(surface), surface);
+    const auto gradients = torch::autograd::grad({loss}, parameters);
     share.loss += loss.item<double>();
-    if (i == 0)
+    if (sample == first)
       share.gradients = gradients;
     else
       for (std::size_t p = 0; p < gradients.size(); ++p) share.gradients[p].add_(gradients[p]);
   }
+  for (torch::Tensor& gradient : share.gradients) gradient.div_(count);
+  share.loss /= count;
   return share;
 }
 
-double SurfaceTrainer::step() {
-  const auto threads = static_cast<std::uint64_t>(options_.threads);
-  const std::uint64_t each = static_cast<std::uint64_t>(options_.batch) / threads;
-  std::vector<std::vector<SurfaceTensors>> surfaces(threads);
-  for (std::uint64_t i = 0; i < each * threads; ++i) surfaces[i / each].push_back(pool_[result_.samples + i]);
-  std::vector<std::future<Share>> others;
-  for (std::uint64_t t = 1; t < threads; ++t)
-    others.push_back(std::async(std::launch::async, [&, t] { return work(result_.samples + t * each, surfaces[t]); }));
-  Share sum = work(result_.samples, surfaces[0]);
-  for (auto& other : others) {
-    const Share share = other.get();
-    for (std::size_t p = 0; p < sum.gradients.size(); ++p) sum.gradients[p].add_(share.gradients[p]);
-    sum.loss += share.loss;
-  }
-  for (torch::Tensor& gradient : sum.gradients) gradient.div_(options_.batch);
-  StepOptions step;
-  step.learning_rate = learning_rate(options_, result_.steps);
-  step.weight_decay = options_.weight_decay;
-  step.clip = options_.gradient_clip;
-  const auto done = static_cast<double>(result_.steps);
-  step.average_decay = std::min(options_.average_decay, (1 + done) / (10 + done));
-  step.step = static_cast<std::int64_t>(++result_.steps);
-  adamw_step(tensors_, sum.gradients, step);
-  result_.samples += static_cast<std::uint64_t>(options_.batch);
-  return result_.last_loss = sum.loss / options_.batch;
-}
-
-void SurfaceTrainer::validate() {
-  if (held_out_.empty())
-    for (int i = 0; i < options_.validation_samples; ++i)
-      held_out_.push_back(to_tensors(provider_(first_validation_sample + static_cast<std::uint64_t>(i)), true));
-  torch::NoGradGuard no_gradient;
-  std::vector<torch::Tensor> values;
-  for (TrainedTensor& tensor : tensors_) {
-    values.push_back(tensor.value.clone());
-    tensor.value.copy_(tensor.average);
-  }
+Validation SurfaceTraining::validate() {
+  if (held_out.empty())
+    for (int i = 0; i < options.loop.validation_samples; ++i)
+      held_out.push_back(to_tensors(provider(first_validation_sample + static_cast<std::uint64_t>(i)), true));
   Counts counts;
-  for (const SurfaceTensors& surface : held_out_) counts.add(network_->forward(surface), surface);
-  for (std::size_t i = 0; i < tensors_.size(); ++i) tensors_[i].value.copy_(values[i]);
+  for (const SurfaceTensors& surface : held_out) counts.add(network->forward(surface), surface);
   const SurfaceFigures figures = counts.figures();
-  const bool better = figures.intersection > result_.best.intersection;
-  char line[200];
-  std::snprintf(line, sizeof line, "held out: loss %.4f, accuracy %.4f, intersection over union %.4f%s", figures.loss,
-                figures.accuracy, figures.intersection, better ? ", best so far" : "");
-  log(line);
-  if (!better) return;
-  result_.best = figures;
-  if (options_.folder.empty()) return;
-  TensorFile file;
-  for (const TrainedTensor& tensor : tensors_)
-    file.tensors[tensor.name] = store_tensor(tensor.average, TensorType::float32);
-  note_surface_shape(options_.shape, file.metadata);
-  file.metadata["training.samples"] = std::to_string(result_.samples);
-  file.metadata["training.steps"] = std::to_string(result_.steps);
-  file.metadata["training.pool"] = std::to_string(options_.pool);
-  file.metadata["training.seed"] = std::to_string(options_.seed);
-  file.metadata["validation.samples"] = std::to_string(options_.validation_samples);
-  file.metadata["validation.accuracy"] = std::to_string(figures.accuracy);
-  file.metadata["validation.intersection_over_union"] = std::to_string(figures.intersection);
-  write_safetensors(options_.folder / best_name, file);
-}
-
-void SurfaceTrainer::save_checkpoint() const {
-  if (options_.folder.empty()) return;
-  TensorFile file;
-  store_progress(tensors_, {result_.samples, result_.steps, result_.best.intersection}, file);
-  note_surface_shape(options_.shape, file.metadata);
-  file.metadata["training.seed"] = std::to_string(options_.seed);
-  write_safetensors(options_.folder / checkpoint_name, file);
-}
-
-bool SurfaceTrainer::load_checkpoint() {
-  const std::filesystem::path path = options_.folder / checkpoint_name;
-  if (!std::filesystem::exists(path)) return false;
-  const TensorFile file = read_safetensors(path);
-  std::map<std::string, std::string> wanted;
-  note_surface_shape(options_.shape, wanted);
-  wanted["training.seed"] = std::to_string(options_.seed);
-  const TrainingProgress progress = load_progress(file, wanted, options_.folder, tensors_);
-  result_.samples = progress.samples;
-  result_.steps = progress.steps;
-  result_.best.intersection = progress.best;
-  log("going on from " + std::to_string(result_.samples) + " samples");
-  return true;
-}
-
-SurfaceTrainingResult SurfaceTrainer::run() {
-  const Clock::time_point start = Clock::now();
-  Clock::time_point logged = start, saved = start, validated = start;
-  double sum = 0;
-  int steps = 0;
-  while (result_.samples < options_.samples && (options_.hours <= 0 || minutes_since(start) < options_.hours * 60)) {
-    sum += step();
-    if (++steps == options_.log_steps) {
-      char line[160];
-      std::snprintf(line, sizeof line, "%llu samples, loss %.4f, %.1f samples/s",
-                    static_cast<unsigned long long>(result_.samples), sum / steps,
-                    steps * options_.batch / (60 * minutes_since(logged)));
-      log(line);
-      sum = 0;
-      steps = 0;
-      logged = Clock::now();
-    }
-    if (options_.validation_samples > 0 && minutes_since(validated) >= options_.validation_minutes) {
-      validate();
-      validated = logged = Clock::now();
-      sum = 0;
-      steps = 0;
-    }
-    if (minutes_since(saved) >= options_.checkpoint_minutes) {
-      save_checkpoint();
-      saved = Clock::now();
-    }
-  }
-  if (options_.validation_samples > 0) validate();
-  save_checkpoint();
-  return result_;
+  if (figures.intersection > best.intersection) best = figures;
+  Validation validation;
+  validation.selection = figures.intersection;
+  validation.figures = {
+      {"loss", figures.loss}, {"accuracy", figures.accuracy}, {"intersection_over_union", figures.intersection}};
+  validation.notes = {{"validation.samples", std::to_string(options.loop.validation_samples)},
+                      {"validation.accuracy", std::to_string(figures.accuracy)},
+                      {"validation.intersection_over_union", std::to_string(figures.intersection)}};
+  return validation;
 }
 
 }  // namespace
 
 SurfaceTrainingResult train_surface(const SurfaceProvider& provider, const SurfaceTrainingOptions& options) {
   require_in_range(options);
-  require_training_folder(options.folder, options.resume);
   const TensorThreads one_thread(1);
-  return SurfaceTrainer(provider, options).run();
+  SurfaceTraining training(provider, options);
+  TrainingTask task;
+  note_surface_shape(options.shape, task.identity);
+  task.notes["training.pool"] = std::to_string(options.pool);
+  task.weight_type = TensorType::float32;
+  task.lower_is_better = false;
+  task.prepare = [&](std::uint64_t first, int count) { training.prepare(first, count); };
+  task.share = [&](std::uint64_t first, int count) { return training.share(first, count); };
+  task.validate = [&] { return training.validate(); };
+  const TrainingLoopResult result = run_training_loop(*training.network, task, options.loop);
+  SurfaceTrainingResult all{result.steps, result.samples, result.last_loss, training.best};
+  // The best may be of an earlier run, whose checkpoint says no more of it.
+  if (result.best > training.best.intersection) all.best = {.intersection = result.best};
+  return all;
 }
 
 SurfaceFigures measure_surface(const SurfaceNetwork& network, const SurfaceProvider& provider, std::uint64_t first,
@@ -361,11 +229,8 @@ SurfaceFigures measure_surface(const SurfaceNetwork& network, const SurfaceProvi
 }
 
 TensorFile export_surface(const std::filesystem::path& folder, const std::map<std::string, std::string>& notes) {
-  if (!std::filesystem::exists(folder / best_name))
-    throw InputError("The folder " + folder.string() + " has no weights to export.");
-  TensorFile file = read_safetensors(folder / best_name);
+  TensorFile file = weights_of_run(folder, TensorType::float32, notes);
   read_surface_shape(file.metadata);  // weights of another network must not get out
-  for (const auto& [key, text] : notes) file.metadata[key] = text;
   return file;
 }
 

@@ -4,40 +4,39 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <map>
 #include <string>
 
 #include "learning/safetensors.hpp"
 #include "learning/surface_network.hpp"
 #include "learning/surface_sample.hpp"
+#include "learning/training_options.hpp"
 
 namespace rhizodont {
+
+/// What the loop takes for surface networks where nothing else is said.
+inline TrainingLoopOptions surface_training_loop() {
+  TrainingLoopOptions loop;
+  loop.batch = 4;
+  loop.samples = 60'000;
+  loop.learning_rate = 2e-3;
+  loop.warm_up = 100;
+  loop.weight_decay = 1e-3;
+  loop.average_decay = 0.995;
+  loop.threads = 1;
+  loop.validation_samples = 100;
+  loop.validation_minutes = 8;
+  loop.checkpoint_minutes = 2;
+  return loop;
+}
 
 /// Settings of `train_surface`.
 struct SurfaceTrainingOptions {
   SurfaceShape shape;
-  int batch = 4;                   ///< samples per step, >= 1
-  std::uint64_t samples = 60'000;  ///< length of the learning-rate schedule in samples; training stops there
-  std::uint64_t pool = 3'000;      ///< different samples, >= 1: afterwards they come again, turned otherwise
-  double hours = 0;                ///< stop after this time, 0: no limit
-  double learning_rate = 2e-3;     ///< largest rate, reached after the warm-up
-  double lowest_rate = 0.02;       ///< share of it left at the end of the cosine, 0..1
-  int warm_up = 100;               ///< steps of linear warm-up, >= 0
-  double weight_decay = 1e-3;      ///< of weight matrices
-  double gradient_clip = 1.0;      ///< largest L2 norm of the gradient
-  double average_decay = 0.995;    ///< of the running mean of the weights that is validated and exported, 0..1
-  double tilt_radians = 0.08;      ///< standard deviation of the tilt of positions and normals, >= 0; about z any turn
-  double scale_deviation = 0.04;   ///< of the logarithm of the positions' scale, >= 0
-  int threads = 1;                 ///< each works on its share of a batch, >= 1, divides `batch`
-  std::uint64_t seed = 1;          ///< of weights and turns
-  int validation_samples = 100;    ///< held-out samples, numbers that training never reaches; 0: none
-  double validation_minutes = 8;   ///< time between validations
-  double checkpoint_minutes = 2;   ///< time between checkpoints; a stopped run loses at most this
-  int log_steps = 50;              ///< steps between log lines, >= 1
-  std::filesystem::path folder;    ///< where checkpoints go; empty: none are written
-  bool resume = false;             ///< go on from the folder's checkpoint, if there is one
-  std::function<void(const std::string&)> log;  ///< gets each line; may be empty
+  TrainingLoopOptions loop = surface_training_loop();
+  std::uint64_t pool = 3'000;     ///< different samples, >= 1: afterwards they come again, turned otherwise
+  double tilt_radians = 0.08;     ///< standard deviation of the tilt of positions and normals, >= 0; about z any turn
+  double scale_deviation = 0.04;  ///< of the logarithm of the positions' scale, >= 0
 };
 
 /// How well a network tells label 1 from label 0, at a threshold of 0.5 and over all vertices of all samples.
@@ -55,11 +54,13 @@ struct SurfaceTrainingResult {
   SurfaceFigures best;  ///< of the validation with the largest intersection over union
 };
 
-/// Trains a surface network on labelled samples: cross entropy, each vertex weighted by its area. Writes
-/// `checkpoint.safetensors` (a resumed run gives the same weights as one that was never stopped) and, each time the
-/// validation improves, `best.safetensors` (running mean of the weights) to `options.folder`. The provider is called
-/// from several threads, ahead of need, with numbers below `pool` and, for validation, from `first_validation_sample`
-/// on. Throws UsageError for options out of range, InputError for a sample or checkpoint that does not fit.
+/// Trains a surface network on labelled samples: cross entropy, each vertex weighted by its area; in the loop of
+/// `TrainingLoopOptions`: checkpoints and best weights (single precision) go to its folder, which a stopped run goes on
+/// from with the same result. The provider is called from several threads, ahead of need, with numbers below `pool`
+/// and, for validation, from `first_validation_sample` on. Reports the validation figures `loss`, `accuracy` and
+/// `intersection_over_union`, which chooses the best weights.
+/// Throws UsageError for options out of range, InputError for a sample or checkpoint that does not fit and for
+/// processes that lose each other, NoResultError where the loss or its gradient is no number.
 SurfaceTrainingResult train_surface(const SurfaceProvider& provider, const SurfaceTrainingOptions& options);
 
 /// The figures of a network on samples `first` .. `first + count - 1`.

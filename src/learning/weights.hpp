@@ -8,8 +8,8 @@
 
 #include <string>
 
+#include "learning/completion_shape.hpp"
 #include "learning/safetensors.hpp"
-#include "learning/train_completion.hpp"
 
 namespace rhizodont {
 

@@ -14,6 +14,7 @@
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
+#include "skirt/skirt_features.hpp"
 #include "teeth/fdi.hpp"
 
 #include <Eigen/Dense>
@@ -246,6 +247,14 @@ SkirtSample make_skirt_sample(const ToothFamilies& families, std::uint64_t seed,
     }
   }
   throw NoResultError("No crown with a skirt came out of 20 draws.");
+}
+
+SurfaceSample make_skirt_training_sample(const ToothFamilies& families, std::uint64_t seed,
+                                         const SkirtSampleOptions& options, int eigenvectors) {
+  SkirtSample crown = make_skirt_sample(families, seed, options);
+  SurfaceSample sample = skirt_features(crown.mesh, eigenvectors);
+  sample.labels = std::move(crown.is_tooth);
+  return sample;
 }
 
 std::vector<std::uint8_t> label_by_restored(const TriangleMesh& crown, const TriangleMesh& restored,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "families/tooth_family.hpp"
+#include "learning/surface_sample.hpp"
 #include "rhizodont/mesh.hpp"
 
 #include <cstdint>
@@ -36,6 +37,11 @@ struct SkirtSample {
 /// Depends on seed and options alone. Throws UsageError for bad options, NoResultError if 20 draws came to nothing.
 SkirtSample make_skirt_sample(const ToothFamilies& families, std::uint64_t seed,
                               const SkirtSampleOptions& options = {});
+
+/// The same crown as the skirt network is trained on it: what it looks at (skirt_features), labelled.
+/// `eigenvectors`: >= 1. Throws as make_skirt_sample and skirt_features.
+SurfaceSample make_skirt_training_sample(const ToothFamilies& families, std::uint64_t seed,
+                                         const SkirtSampleOptions& options, int eigenvectors);
 
 /// The paper's labelling: a vertex of a crown is tooth if it lies within `tolerance_mm` (> 0) of the restored tooth's
 /// surface, else skirt. Throws UsageError for another tolerance, InputError if the restored tooth has no area.

@@ -242,19 +242,17 @@ TEST_F(Families, matchedPlacesAreTheSameOnAllTeethOfAType) {
   std::size_t places = 0, with = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     const CompletionSample sample = make_completion_sample(families, seed, options);
-    if (sample.matched.empty()) continue;
+    const CompletionTrainingSample& pair = sample.pair;
+    if (pair.matched.empty()) continue;
     ++with;
-    if (places == 0) places = sample.matched.size() / 3;
-    ASSERT_EQ(sample.matched.size(), 3 * places);
-    ASSERT_EQ(sample.matched_normals.size(), 3 * places);
-    ASSERT_EQ(sample.matched_root.size(), places);
+    if (places == 0) places = pair.matched.size();
+    ASSERT_EQ(pair.matched.size(), places);
+    ASSERT_EQ(pair.matched_normals.size(), places);
+    ASSERT_EQ(pair.matched_root.size(), places);
     // The tips in the list of apices are among them.
     for (const Point& apex : sample.apices) {
       double nearest = 1;
-      for (std::size_t i = 0; i < places; ++i) {
-        const Eigen::Vector3f p(sample.matched[3 * i], sample.matched[3 * i + 1], sample.matched[3 * i + 2]);
-        nearest = std::min(nearest, (p.cast<double>() - apex).norm());
-      }
+      for (const Eigen::Vector3f& p : pair.matched) nearest = std::min(nearest, (p.cast<double>() - apex).norm());
       EXPECT_LT(nearest, 1e-6);
     }
     for (const Eigen::Vector3d& axis : sample.root_axes) EXPECT_NEAR(axis.norm(), 1, 1e-9);
@@ -305,30 +303,26 @@ TEST_F(Families, samplesAreInCanonicalPose) {
     CompletionSampleOptions options;
     options.type = std::array{3, 8, 13}[seed % 3];
     const CompletionSample sample = make_completion_sample(families, seed, options);
-    ASSERT_EQ(sample.input.size(), 3U * 1024);
-    ASSERT_EQ(sample.target.size(), 3U * 4096);
-    ASSERT_EQ(sample.target_normals.size(), 3U * 4096);
-    ASSERT_EQ(sample.target_root.size(), 4096U);
+    const CompletionTrainingSample& pair = sample.pair;
+    ASSERT_EQ(pair.input.size(), 1024U);
+    ASSERT_EQ(pair.target.size(), 4096U);
+    ASSERT_EQ(pair.normals.size(), 4096U);
+    ASSERT_EQ(pair.is_root.size(), 4096U);
     ASSERT_EQ(sample.target_cement.size(), 4096U);
     Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < sample.input.size(); i += 3)
-      centre += Eigen::Vector3f(sample.input[i], sample.input[i + 1], sample.input[i + 2]).cast<double>() / 1024;
+    for (const Eigen::Vector3f& p : pair.input) centre += p.cast<double>() / 1024;
     EXPECT_LT(centre.norm(), 0.02);
+    for (const Eigen::Vector3f& n : pair.normals) EXPECT_NEAR(n.norm(), 1, 1e-5);
     double lowest = 0;
-    for (std::size_t i = 0; i < 4096; ++i) {
-      const Eigen::Vector3f n(sample.target_normals[3 * i], sample.target_normals[3 * i + 1],
-                              sample.target_normals[3 * i + 2]);
-      EXPECT_NEAR(n.norm(), 1, 1e-5);
-      lowest = std::min(lowest, static_cast<double>(sample.target[3 * i + 2]));
-    }
+    for (const Eigen::Vector3f& p : pair.target) lowest = std::min(lowest, static_cast<double>(p.z()));
     // The apices are where the target ends, and the root's length counts from the crop's lowest point.
     double apex = 0;
     for (const Point& p : sample.apices) apex = std::min(apex, p.z());
     EXPECT_NEAR(apex, lowest, 0.06);
     EXPECT_GT(sample.root_length_mm, 5);
     EXPECT_LT(sample.root_length_mm, 27);
-    EXPECT_GT(std::count(sample.target_root.begin(), sample.target_root.end(), 1), 1000);
-    EXPECT_GT(std::count(sample.target_root.begin(), sample.target_root.end(), 0), 300);
+    EXPECT_GT(std::count(pair.is_root.begin(), pair.is_root.end(), 1), 1000);
+    EXPECT_GT(std::count(pair.is_root.begin(), pair.is_root.end(), 0), 300);
   }
 }
 
@@ -352,9 +346,9 @@ TEST_F(Families, axisOfTheFormIsWhatLayingTheMeanCrownFinds) {
     ASSERT_LT((found.frame.centre - sample.frame.centre).norm(), 1e-9);
     const Eigen::Matrix3d turn = found.frame.rotation * sample.frame.rotation.transpose();
     if (turn(0, 0) < 0.8) continue;  // laid the wrong way round
-    const Eigen::Vector2d error = found.form_axis - sample.form_axis;
-    product += found.form_axis.cwiseProduct(sample.form_axis);
-    square += sample.form_axis.cwiseAbs2();
+    const Eigen::Vector2d drawn = sample.pair.form_axis.cast<double>(), error = found.form_axis - drawn;
+    product += found.form_axis.cwiseProduct(drawn);
+    square += drawn.cwiseAbs2();
     rest += error.cwiseAbs2();
   }
   for (const int i : {0, 1}) {
@@ -369,10 +363,10 @@ TEST_F(Families, samplesRepeatAndDiffer) {
   options.type = 13;
   const CompletionSample a = make_completion_sample(families, 123, options);
   const CompletionSample b = make_completion_sample(families, 123, options);
-  EXPECT_EQ(a.input, b.input);
-  EXPECT_EQ(a.target, b.target);
-  EXPECT_EQ(a.type, b.type);
-  EXPECT_NE(a.target, make_completion_sample(families, 124, options).target);
+  EXPECT_EQ(a.pair.input, b.pair.input);
+  EXPECT_EQ(a.pair.target, b.pair.target);
+  EXPECT_EQ(a.pair.type, b.pair.type);
+  EXPECT_NE(a.pair.target, make_completion_sample(families, 124, options).pair.target);
   EXPECT_THROW(generate_tooth(families, 16, 1), UsageError);
   EXPECT_THROW(generate_tooth(families, -1, 1), UsageError);
   options.type = 16;

@@ -153,12 +153,13 @@ TEST_F(OneTemplate, MakesSamplesToTrainWith) {
   options.type = molar;
   const ToothFamilies families = load();
   const CompletionSample sample = make_completion_sample(families, 5, options);
-  EXPECT_EQ(sample.input.size(), 3U * 1024);
-  EXPECT_EQ(sample.target.size(), 3U * 4096);
-  EXPECT_EQ(sample.type, molar);
-  EXPECT_TRUE(std::all_of(sample.target.begin(), sample.target.end(), [](float x) { return std::isfinite(x); }));
-  EXPECT_EQ(make_completion_sample(families, 5, options).target, sample.target);
-  EXPECT_NE(make_completion_sample(families, 6, options).target, sample.target);
+  EXPECT_EQ(sample.pair.input.size(), 1024U);
+  EXPECT_EQ(sample.pair.target.size(), 4096U);
+  EXPECT_EQ(sample.pair.type, molar);
+  EXPECT_TRUE(std::all_of(sample.pair.target.begin(), sample.pair.target.end(),
+                          [](const Eigen::Vector3f& p) { return p.allFinite(); }));
+  EXPECT_EQ(make_completion_sample(families, 5, options).pair.target, sample.pair.target);
+  EXPECT_NE(make_completion_sample(families, 6, options).pair.target, sample.pair.target);
 }
 
 TEST_F(OneTemplate, WhatWasNotLoadedOrIsNoTypeIsRefused) {

@@ -12,8 +12,8 @@
 #include <set>
 
 #include "learning/capsules.hpp"
+#include "learning/completion_training_batch.hpp"
 #include "learning/losses.hpp"
-#include "learning/training_batch.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {
@@ -26,15 +26,15 @@ const std::vector<PointLayout>& tiny_layouts() {
   return layouts;
 }
 
-TrainingBatch tiny_batch(int count = 3) {
-  return make_training_batch(testing::tiny_sample, tiny_layouts(), 0, count, testing::tiny_options(), true);
+CompletionTrainingBatch tiny_batch(int count = 3) {
+  return make_completion_training_batch(testing::tiny_sample, tiny_layouts(), 0, count, testing::tiny_options(), true);
 }
 
 TEST(AdaPoinTr, Shapes) {
   torch::manual_seed(1);
   const CompletionShape shape = testing::tiny_shape();
   AdaPoinTr network(shape);
-  const TrainingBatch batch = tiny_batch();
+  const CompletionTrainingBatch batch = tiny_batch();
   const Prediction p = network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
   EXPECT_EQ(p.coarse.sizes(), (torch::IntArrayRef{3, 24, 3}));
   EXPECT_EQ(p.fine.sizes(), (torch::IntArrayRef{3, 96, 3}));
@@ -48,7 +48,7 @@ TEST(AdaPoinTr, Shapes) {
 TEST(AdaPoinTr, DenoisingQueriesDoNotLeak) {
   torch::manual_seed(2);
   AdaPoinTr network(testing::tiny_shape());
-  const TrainingBatch batch = tiny_batch();
+  const CompletionTrainingBatch batch = tiny_batch();
   const Prediction with =
       network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
   const Prediction without = network->forward(batch.crowns, {}, {}, Precision::single);
@@ -75,12 +75,13 @@ TEST(AdaPoinTr, GradientReachesEveryParameter) {
   torch::manual_seed(4);
   AdaPoinTr network(testing::tiny_shape());
   // All types, so that no row of the tables per type is left out.
-  const TrainingOptions options = testing::tiny_options();
-  const TrainingBatch batch = make_training_batch(testing::tiny_sample, tiny_layouts(), 0, 17, options, true);
+  const CompletionTrainingOptions options = testing::tiny_options();
+  const CompletionTrainingBatch batch =
+      make_completion_training_batch(testing::tiny_sample, tiny_layouts(), 0, 17, options, true);
   batch.crowns.types.copy_(torch::arange(17));
   batch.crowns.form_axes.uniform_(-0.2, 0.2);
   const Prediction p = network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
-  training_loss(p, batch.target, options).total.backward();
+  completion_loss(p, batch.target, options).total.backward();
   for (const auto& item : network->named_parameters()) {
     ASSERT_TRUE(item.value().grad().defined()) << item.key();
     EXPECT_GT(item.value().grad().abs().max().item<double>(), 1e-9) << item.key();
@@ -89,12 +90,13 @@ TEST(AdaPoinTr, GradientReachesEveryParameter) {
 }
 
 TEST(AdaPoinTr, BatchesHaveTheAxesOfTheirSamples) {
-  const SampleProvider provider = [](std::uint64_t index) {
-    TrainingSample sample = testing::tiny_sample(index);
+  const CompletionSampleProvider provider = [](std::uint64_t index) {
+    CompletionTrainingSample sample = testing::tiny_sample(index);
     sample.form_axis = {0.01F * static_cast<float>(index), -0.1F};
     return sample;
   };
-  const TrainingBatch batch = make_training_batch(provider, tiny_layouts(), 5, 3, testing::tiny_options(), true);
+  const CompletionTrainingBatch batch =
+      make_completion_training_batch(provider, tiny_layouts(), 5, 3, testing::tiny_options(), true);
   for (int b = 0; b < 3; ++b) {
     EXPECT_FLOAT_EQ(batch.crowns.form_axes[b][0].item<float>(), 0.01F * static_cast<float>(5 + b));
     EXPECT_FLOAT_EQ(batch.crowns.form_axes[b][1].item<float>(), -0.1F);
@@ -104,7 +106,7 @@ TEST(AdaPoinTr, BatchesHaveTheAxesOfTheirSamples) {
 TEST(AdaPoinTr, AxisOfTheFormMovesItsOwnCrownAlone) {
   torch::manual_seed(6);
   AdaPoinTr network(testing::tiny_shape());
-  TrainingBatch batch = tiny_batch();
+  CompletionTrainingBatch batch = tiny_batch();
   const Prediction before = network->forward(batch.crowns, {}, {}, Precision::single);
   batch.crowns.form_axes[1][0] = 0.1;
   const Prediction after = network->forward(batch.crowns, {}, {}, Precision::single);
@@ -115,9 +117,9 @@ TEST(AdaPoinTr, AxisOfTheFormMovesItsOwnCrownAlone) {
 TEST(AdaPoinTr, ExpectedDistancesMoveNothingElse) {
   torch::manual_seed(4);
   AdaPoinTr network(testing::tiny_shape());
-  const TrainingBatch batch = tiny_batch();
+  const CompletionTrainingBatch batch = tiny_batch();
   const Prediction p = network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
-  training_loss(p, batch.target, testing::tiny_options()).spread.backward();
+  completion_loss(p, batch.target, testing::tiny_options()).spread.backward();
   for (const auto& item : network->named_parameters()) {
     if (item.key().starts_with("head_spread"))
       EXPECT_GT(item.value().grad().abs().max().item<double>(), 1e-9) << item.key();
@@ -128,7 +130,7 @@ TEST(AdaPoinTr, ExpectedDistancesMoveNothingElse) {
 
 TEST(AdaPoinTr, CrownsDoNotDependOnTheOrderOfTheirPoints) {
   const CompletionShape shape = testing::tiny_shape();
-  const TrainingSample sample = testing::capsule(5, 80, 10);
+  const CompletionTrainingSample sample = testing::capsule(5, 80, 10);
   std::vector<float> given, shuffled;
   std::vector<std::size_t> order(80);
   std::iota(order.begin(), order.end(), 0);
@@ -145,7 +147,7 @@ TEST(AdaPoinTr, CrownsDoNotDependOnTheOrderOfTheirPoints) {
 TEST(AdaPoinTr, TypeMatters) {
   torch::manual_seed(5);
   AdaPoinTr network(testing::tiny_shape());
-  TrainingBatch batch = tiny_batch(1);
+  CompletionTrainingBatch batch = tiny_batch(1);
   batch.crowns.types.fill_(2);
   const torch::Tensor one = network->forward(batch.crowns, {}, {}, Precision::single).coarse;
   batch.crowns.types.fill_(unknown_type);
@@ -156,7 +158,7 @@ TEST(AdaPoinTr, HalfPrecisionIsClose) {
   if (!layers::half_is_fast()) GTEST_SKIP() << "this processor multiplies bfloat16 slowly";
   torch::manual_seed(6);
   AdaPoinTr network(testing::tiny_shape());
-  const TrainingBatch batch = tiny_batch();
+  const CompletionTrainingBatch batch = tiny_batch();
   const torch::Tensor single = network->forward(batch.crowns, {}, {}, Precision::single).fine;
   const torch::Tensor half = network->forward(batch.crowns, {}, {}, Precision::half).fine;
   EXPECT_LT((single - half).abs().max().item<double>(), 0.05);
@@ -222,28 +224,28 @@ TEST(Layers, IsolatedQueriesSeeOnlyTheFirstEntries) {
   EXPECT_FALSE(torch::allclose(before[0][4], after[0][4], 0, 1e-4));
 }
 
-TEST(TrainingBatch, RefusesSamplesThatCannotBeUsed) {
+TEST(CompletionTrainingBatch, RefusesSamplesThatCannotBeUsed) {
   const CompletionShape shape = testing::tiny_shape();
-  const TrainingSample good = testing::tiny_sample(1);
-  EXPECT_NO_THROW(check_sample(good, shape));
-  TrainingSample bad = good;
+  const CompletionTrainingSample good = testing::tiny_sample(1);
+  EXPECT_NO_THROW(check_completion_sample(good, shape));
+  CompletionTrainingSample bad = good;
   bad.input.pop_back();
-  EXPECT_THROW(check_sample(bad, shape), InputError);
+  EXPECT_THROW(check_completion_sample(bad, shape), InputError);
   bad = good;
   bad.normals.pop_back();
-  EXPECT_THROW(check_sample(bad, shape), InputError);
+  EXPECT_THROW(check_completion_sample(bad, shape), InputError);
   bad = good;
   bad.target[3].x() = std::numeric_limits<float>::infinity();
-  EXPECT_THROW(check_sample(bad, shape), InputError);
+  EXPECT_THROW(check_completion_sample(bad, shape), InputError);
   bad = good;
   bad.matched_normals.pop_back();
-  EXPECT_THROW(check_sample(bad, shape), InputError);
+  EXPECT_THROW(check_completion_sample(bad, shape), InputError);
   bad = good;
   bad.type = 17;
-  EXPECT_THROW(check_sample(bad, shape), InputError);
+  EXPECT_THROW(check_completion_sample(bad, shape), InputError);
 }
 
-TEST(TrainingBatch, PatchesLieOnTheTooth) {
+TEST(CompletionTrainingBatch, PatchesLieOnTheTooth) {
   const QueryLayout layout = initial_layout(testing::tiny_sample, testing::tiny_shape());
   ASSERT_EQ(layout.patches.size(), 17U);
   ASSERT_EQ(layout.points.size(), 16U);
@@ -270,7 +272,7 @@ TEST(AdaPoinTr, StartsFromTheTypesTooth) {
   }
   EXPECT_THROW(network->set_patches(17, layout.patches[0].points, layout.patches[0].normals), UsageError);
   EXPECT_THROW(network->set_patches(0, layout.patches[0].points, std::vector<float>(3)), UsageError);
-  const TrainingBatch batch = tiny_batch(1);
+  const CompletionTrainingBatch batch = tiny_batch(1);
   const Prediction p = network->forward(batch.crowns, batch.target.seeds, batch.target.seed_patches, Precision::single);
   const auto type = batch.crowns.types[0].item<std::int64_t>();
   // what an untrained head adds is small beside the tooth, once the bend of the queries is taken away
@@ -286,9 +288,9 @@ TEST(AdaPoinTr, StartsFromTheTypesTooth) {
   EXPECT_LT((p.denoised[0] - batch.target.seeds[0].unsqueeze(1) - offsets).abs().max().item<double>(), 0.3);
 }
 
-TEST(TrainingBatch, LayoutGroupsDistinctNeighbours) {
+TEST(CompletionTrainingBatch, LayoutGroupsDistinctNeighbours) {
   const QueryLayout layout = initial_layout(testing::tiny_sample, testing::tiny_shape());
-  const TrainingSample sample = testing::tiny_sample(16 + 3);
+  const CompletionTrainingSample sample = testing::tiny_sample(16 + 3);
   for (std::size_t type = 0; type < 16; ++type) EXPECT_EQ(layout.points[type].size(), type < 8 ? 96U : 0U);
   const PointLayout& points = layout.points[3];
   EXPECT_EQ(std::set<std::int32_t>(points.begin(), points.end()).size(), 96U);
@@ -299,14 +301,15 @@ TEST(TrainingBatch, LayoutGroupsDistinctNeighbours) {
   }
 }
 
-TEST(TrainingBatch, MatchesAreTheSamplesOwnPoints) {
-  TrainingOptions options = testing::tiny_options();
+TEST(CompletionTrainingBatch, MatchesAreTheSamplesOwnPoints) {
+  CompletionTrainingOptions options = testing::tiny_options();
   options.unknown_share = 0;
-  const TrainingBatch batch = make_training_batch(testing::tiny_sample, tiny_layouts(), 0, 10, options, true);
+  const CompletionTrainingBatch batch =
+      make_completion_training_batch(testing::tiny_sample, tiny_layouts(), 0, 10, options, true);
   for (int b = 0; b < 10; ++b) {
     ASSERT_EQ(batch.target.is_matched[b].item<float>(), b < 8 ? 1.0F : 0.0F);
     if (b >= 8) continue;
-    const TrainingSample sample = testing::tiny_sample(static_cast<std::uint64_t>(b));
+    const CompletionTrainingSample sample = testing::tiny_sample(static_cast<std::uint64_t>(b));
     const PointLayout& layout = tiny_layouts()[static_cast<std::size_t>(b)];
     for (int i = 0; i < 96; ++i) {
       const auto v = static_cast<std::size_t>(layout[static_cast<std::size_t>(i)]);
@@ -320,12 +323,12 @@ TEST(TrainingBatch, MatchesAreTheSamplesOwnPoints) {
   }
 }
 
-TEST(TrainingBatch, HidesTypesInTrainingOnly) {
-  TrainingOptions options = testing::tiny_options();
+TEST(CompletionTrainingBatch, HidesTypesInTrainingOnly) {
+  CompletionTrainingOptions options = testing::tiny_options();
   options.unknown_share = 0.5;
   const auto hidden = [&](bool training) {
-    return (make_training_batch(testing::tiny_sample, tiny_layouts(), 0, 64, options, training).crowns.types ==
-            unknown_type)
+    return (make_completion_training_batch(testing::tiny_sample, tiny_layouts(), 0, 64, options, training)
+                .crowns.types == unknown_type)
         .sum()
         .item<std::int64_t>();
   };

@@ -7,16 +7,16 @@
 #include <numbers>
 #include <random>
 
+#include "learning/completion_training_sample.hpp"
 #include "learning/train_completion.hpp"
-#include "learning/training_sample.hpp"
 
 namespace rhizodont::testing {
 
 /// A bent tube as a stand-in for a tooth: its upper part is the crown. Type and shape follow from the number.
-inline TrainingSample capsule(std::uint64_t number, int input_points, int target_points) {
+inline CompletionTrainingSample capsule(std::uint64_t number, int input_points, int target_points) {
   std::mt19937_64 random(1000 + number);
   std::uniform_real_distribution<float> uniform(0, 1);
-  TrainingSample sample;
+  CompletionTrainingSample sample;
   sample.type = static_cast<int>(number % tooth_types);
   const float length = 0.7F + 0.3F * uniform(random) + 0.02F * static_cast<float>(sample.type);
   const float radius = 0.25F + 0.1F * uniform(random), bend = 0.3F * (uniform(random) - 0.5F), neck = -0.2F;
@@ -44,9 +44,9 @@ inline TrainingSample capsule(std::uint64_t number, int input_points, int target
 
 /// The same with corresponding points: each has its own height and angle on the tube. Numbers below `matched_types` in
 /// type have them, all others stand for types without.
-inline TrainingSample matched_capsule(std::uint64_t number, int input_points, int target_points,
-                                      int matched_types = 8) {
-  TrainingSample sample = capsule(number, input_points, target_points);
+inline CompletionTrainingSample matched_capsule(std::uint64_t number, int input_points, int target_points,
+                                                int matched_types = 8) {
+  CompletionTrainingSample sample = capsule(number, input_points, target_points);
   if (sample.type >= matched_types) return sample;
   float lowest = 0;
   Eigen::Vector3f middle = Eigen::Vector3f::Zero();
@@ -82,18 +82,18 @@ inline CompletionShape tiny_shape() {
   return shape;
 }
 
-inline TrainingOptions tiny_options() {
-  TrainingOptions options;
+inline CompletionTrainingOptions tiny_options() {
+  CompletionTrainingOptions options;
   options.shape = tiny_shape();
-  options.batch = 4;
-  options.samples = 40;
-  options.warm_up = 2;
+  options.loop.batch = 4;
+  options.loop.samples = 40;
+  options.loop.warm_up = 2;
   options.denoise_queries = 8;
   options.half_precision = false;
-  options.validation_samples = 0;
+  options.loop.validation_samples = 0;
   return options;
 }
 
-inline TrainingSample tiny_sample(std::uint64_t number) { return matched_capsule(number, 64, 128); }
+inline CompletionTrainingSample tiny_sample(std::uint64_t number) { return matched_capsule(number, 64, 128); }
 
 }  // namespace rhizodont::testing

@@ -111,7 +111,9 @@ struct Truth {
     perfect.coarse[1].copy_(target.points[1].narrow(0, 0, 20));
   }
 
-  LossTerms loss(const Prediction& prediction) const { return training_loss(prediction, target, TrainingOptions()); }
+  LossTerms loss(const Prediction& prediction) const {
+    return completion_loss(prediction, target, CompletionTrainingOptions());
+  }
 };
 
 TEST(Losses, PerfectPredictionCostsNothing) {

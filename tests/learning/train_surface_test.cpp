@@ -34,12 +34,12 @@ class SurfaceTraining : public ::testing::Test {
     o.shape.width = 8;
     o.shape.blocks = 1;
     o.shape.eigenvectors = 12;
-    o.batch = 2;
-    o.samples = 24;
+    o.loop.batch = 2;
+    o.loop.samples = 24;
     o.pool = 5;
-    o.warm_up = 2;
-    o.validation_samples = 2;
-    o.folder = folder_ / run;
+    o.loop.warm_up = 2;
+    o.loop.validation_samples = 2;
+    o.loop.folder = folder_ / run;
     return o;
   }
 
@@ -51,9 +51,9 @@ class SurfaceTraining : public ::testing::Test {
 
 TEST_F(SurfaceTraining, LearnsWhatIsEasy) {
   SurfaceTrainingOptions o = options("easy");
-  o.samples = 800;
-  o.learning_rate = 1e-2;
-  o.average_decay = 0.9;
+  o.loop.samples = 800;
+  o.loop.learning_rate = 1e-2;
+  o.loop.average_decay = 0.9;
   o.tilt_radians = o.scale_deviation = 0;
   // Positions are turned about z: labels must not depend on the direction.
   const auto provider = [](std::uint64_t index) {
@@ -67,7 +67,7 @@ TEST_F(SurfaceTraining, LearnsWhatIsEasy) {
   const SurfaceTrainingResult result = train_surface(provider, o);
   EXPECT_GT(result.best.accuracy, 0.9);
   EXPECT_GT(result.best.intersection, 0.8);
-  write_safetensors(folder_ / "weights.safetensors", export_surface(o.folder, {{"note", "a test"}}));
+  write_safetensors(folder_ / "weights.safetensors", export_surface(o.loop.folder, {{"note", "a test"}}));
   const SurfaceNetwork network = SurfaceNetwork::load(folder_ / "weights.safetensors");
   EXPECT_EQ(network.metadata().at("note"), "a test");
   const SurfaceFigures again = measure_surface(network, provider, std::uint64_t{1} << 40, 2);
@@ -81,13 +81,13 @@ TEST_F(SurfaceTraining, LearnsWhatIsEasy) {
 TEST_F(SurfaceTraining, ResumedRunEqualsOneThatNeverStopped) {
   train_surface(bowl_sample, options("whole"));
   SurfaceTrainingOptions o = options("parts");
-  o.checkpoint_minutes = 0;
+  o.loop.checkpoint_minutes = 0;
   const auto stopping = [](std::uint64_t index) {
     if (index == 4) throw NoResultError("stopped");
     return bowl_sample(index);
   };
   EXPECT_THROW(train_surface(stopping, o), NoResultError);
-  o.resume = true;
+  o.loop.resume = true;
   EXPECT_EQ(train_surface(bowl_sample, o).samples, 24U);
   const TensorFile whole = read_safetensors(folder_ / "whole" / "checkpoint.safetensors");
   const TensorFile parts = read_safetensors(folder_ / "parts" / "checkpoint.safetensors");
@@ -97,14 +97,14 @@ TEST_F(SurfaceTraining, ResumedRunEqualsOneThatNeverStopped) {
 
 TEST_F(SurfaceTraining, RefusesWhatDoesNotFit) {
   SurfaceTrainingOptions o = options("bad");
-  o.batch = 3;
-  o.threads = 2;
+  o.loop.batch = 3;
+  o.loop.threads = 2;
   EXPECT_THROW(train_surface(bowl_sample, o), UsageError);
   EXPECT_THROW(export_surface(folder_, {}), InputError);
   o = options("other");
-  o.samples = 2;
+  o.loop.samples = 2;
   train_surface(bowl_sample, o);
-  o.resume = true;
+  o.loop.resume = true;
   o.shape.width = 9;
   EXPECT_THROW(train_surface(bowl_sample, o), InputError);
   TensorFile file;

@@ -35,25 +35,25 @@ class Training : public ::testing::Test {
   }
 
   /// Weights of a short run.
-  CompletionNetwork short_run(TrainingOptions options) const {
-    options.folder = folder_ / "short";
-    std::filesystem::remove_all(options.folder);
+  CompletionNetwork short_run(CompletionTrainingOptions options) const {
+    options.loop.folder = folder_ / "short";
+    std::filesystem::remove_all(options.loop.folder);
     train_completion(testing::tiny_sample, options);
-    write_safetensors(folder_ / "weights.safetensors", export_completion(options.folder, {{"note", "a test"}}));
+    write_safetensors(folder_ / "weights.safetensors", export_completion(options.loop.folder, {{"note", "a test"}}));
     return CompletionNetwork::load(folder_ / "weights.safetensors");
   }
 };
 
 TEST_F(Training, ResumedRunEqualsOneThatNeverStopped) {
-  TrainingOptions options = testing::tiny_options();
-  options.samples = 24;
-  options.threads = 1;
-  options.checkpoint_minutes = 0;
-  options.folder = folder_ / "whole";
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.samples = 24;
+  options.loop.threads = 1;
+  options.loop.checkpoint_minutes = 0;
+  options.loop.folder = folder_ / "whole";
   EXPECT_EQ(train_completion(testing::tiny_sample, options).steps, 6U);
 
   // The same schedule, stopped in the middle of a step, as by a kill.
-  options.folder = folder_ / "parts";
+  options.loop.folder = folder_ / "parts";
   const auto stopping = [](std::uint64_t number) {
     if (number == 12) throw NoResultError("stopped");
     return testing::tiny_sample(number);
@@ -65,35 +65,35 @@ TEST_F(Training, ResumedRunEqualsOneThatNeverStopped) {
     return started ? stopping(number) : testing::tiny_sample(number);
   };
   EXPECT_THROW(train_completion(provider, options), NoResultError);
-  options.resume = true;
-  const TrainingResult parts = train_completion(testing::tiny_sample, options);
+  options.loop.resume = true;
+  const CompletionTrainingResult parts = train_completion(testing::tiny_sample, options);
   EXPECT_EQ(parts.steps, 6U);
   EXPECT_EQ(checkpoint("parts"), checkpoint("whole"));
 }
 
 TEST_F(Training, TwoProcessesEqualOneWithTwiceTheBatch) {
-  TrainingOptions options = testing::tiny_options();
-  options.samples = 24;
-  options.batch = 4;
-  options.threads = 2;
-  options.hours = 1e-12;  // stops before the first step: all go on from the same weights
-  options.folder = folder_ / "alone";
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.samples = 24;
+  options.loop.batch = 4;
+  options.loop.threads = 2;
+  options.loop.hours = 1e-12;  // stops before the first step: all go on from the same weights
+  options.loop.folder = folder_ / "alone";
   train_completion(testing::tiny_sample, options);
   std::filesystem::create_directories(folder_ / "together");
   std::filesystem::copy_file(folder_ / "alone" / "checkpoint.safetensors",
                              folder_ / "together" / "checkpoint.safetensors");
-  options.hours = 0;
-  options.resume = true;
+  options.loop.hours = 0;
+  options.loop.resume = true;
   EXPECT_EQ(train_completion(testing::tiny_sample, options).samples, 24U);
 
-  options.batch = 2;
-  options.threads = 1;
-  options.processes.count = 2;
-  options.processes.first_address = "127.0.0.1:" + std::to_string(20000 + getpid() % 20000);
+  options.loop.batch = 2;
+  options.loop.threads = 1;
+  options.loop.processes.count = 2;
+  options.loop.processes.first_address = "127.0.0.1:" + std::to_string(20000 + getpid() % 20000);
   const auto run = [&](int rank, const char* folder) {
-    TrainingOptions own = options;
-    own.processes.rank = rank;
-    own.folder = folder_ / folder;
+    CompletionTrainingOptions own = options;
+    own.loop.processes.rank = rank;
+    own.loop.folder = folder_ / folder;
     return train_completion(testing::tiny_sample, own);
   };
   auto other = std::async(std::launch::async, [&] { return run(1, "other"); });
@@ -104,21 +104,21 @@ TEST_F(Training, TwoProcessesEqualOneWithTwiceTheBatch) {
 }
 
 TEST_F(Training, StartsFromOtherWeightsWithItsOwnTeeth) {
-  TrainingOptions options = testing::tiny_options();
-  options.samples = 40;
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.samples = 40;
   short_run(options);
-  options.hours = 1e-12;  // nothing but the start
-  options.start_from = folder_ / "weights.safetensors";
-  options.folder = folder_ / "next";
+  options.loop.hours = 1e-12;  // nothing but the start
+  options.loop.start_from = folder_ / "weights.safetensors";
+  options.loop.folder = folder_ / "next";
   const auto shifted = [](std::uint64_t number) {
-    TrainingSample sample = testing::tiny_sample(number);
+    CompletionTrainingSample sample = testing::tiny_sample(number);
     for (auto* points : {&sample.input, &sample.target, &sample.matched})
       for (Eigen::Vector3f& p : *points) p.x() += 0.25F;
     return sample;
   };
   train_completion(shifted, options);
-  const TensorFile before = read_safetensors(options.start_from),
-                   after = read_safetensors(options.folder / "checkpoint.safetensors");
+  const TensorFile before = read_safetensors(options.loop.start_from),
+                   after = read_safetensors(options.loop.folder / "checkpoint.safetensors");
   for (const auto& [name, tensor] : before.tensors) {
     if (name == "patches" || name == "patch_normals") continue;
     EXPECT_EQ(load_floats(tensor), load_floats(after.tensors.at("value." + name))) << name;
@@ -131,47 +131,44 @@ TEST_F(Training, StartsFromOtherWeightsWithItsOwnTeeth) {
   EXPECT_NEAR(
       mean_x(load_floats(after.tensors.at("value.patches"))) - mean_x(load_floats(before.tensors.at("patches"))), 0.25,
       0.1);
-  options.folder = folder_ / "other";
+  options.loop.folder = folder_ / "other";
   options.shape.width += options.shape.heads;
   EXPECT_THROW(train_completion(testing::tiny_sample, options), InputError);
 }
 
 TEST_F(Training, ProcessesThatCannotBeAreRefused) {
-  TrainingOptions options = testing::tiny_options();
-  options.processes = {2, 2, "127.0.0.1:29500"};
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.processes = {2, 2, "127.0.0.1:29500"};
   EXPECT_THROW(train_completion(testing::tiny_sample, options), UsageError);
   for (const char* address : {"127.0.0.1", "127.0.0.1:port", ":29500", "host:0", "host:70000"}) {
-    options.processes = {2, 0, address};
+    options.loop.processes = {2, 0, address};
     EXPECT_THROW(train_completion(testing::tiny_sample, options), UsageError) << address;
   }
 }
 
 TEST_F(Training, SameSeedSameWeights) {
-  TrainingOptions options = testing::tiny_options();
-  options.samples = 12;
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.samples = 12;
   for (const char* run : {"a", "b"}) {
-    options.folder = folder_ / run;
+    options.loop.folder = folder_ / run;
     train_completion(testing::tiny_sample, options);
   }
   EXPECT_EQ(checkpoint("a"), checkpoint("b"));
-  options.folder = folder_ / "c";
-  options.seed = 2;
+  options.loop.folder = folder_ / "c";
+  options.loop.seed = 2;
   train_completion(testing::tiny_sample, options);
   EXPECT_NE(checkpoint("a"), checkpoint("c"));
 }
 
 TEST_F(Training, LearnsATinySetByHeart) {
-  TrainingOptions options = testing::tiny_options();
-  options.samples = 1600;
-  options.learning_rate = 4e-3;
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.samples = 1600;
+  options.loop.learning_rate = 4e-3;
   options.unknown_share = 0;
   options.denoise_queries = 4;
   std::vector<double> losses;
-  options.log_steps = 20;
-  options.log = [&](const std::string& line) {
-    const std::size_t at = line.find("loss ");
-    if (at != std::string::npos) losses.push_back(std::stod(line.substr(at + 5)));
-  };
+  options.loop.report_steps = 20;
+  options.loop.progress = [&](const TrainingProgress& progress) { losses.push_back(progress.loss); };
   // one type in four shapes: what its own tooth brings along is not enough
   train_completion([](std::uint64_t number) { return testing::tiny_sample(16 * (number % 4)); }, options);
   ASSERT_EQ(losses.size(), 20U);
@@ -179,16 +176,19 @@ TEST_F(Training, LearnsATinySetByHeart) {
 }
 
 TEST_F(Training, ValidationKeepsTheBestWeights) {
-  TrainingOptions options = testing::tiny_options();
-  options.validation_samples = 8;
-  std::vector<std::string> lines;
-  options.log = [&](const std::string& line) { lines.push_back(line); };
-  options.folder = folder_ / "run";
-  const TrainingResult result = train_completion(testing::tiny_sample, options);
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.validation_samples = 8;
+  std::vector<TrainingProgress> reports;
+  options.loop.progress = [&](const TrainingProgress& progress) { reports.push_back(progress); };
+  options.loop.folder = folder_ / "run";
+  const CompletionTrainingResult result = train_completion(testing::tiny_sample, options);
   EXPECT_GT(result.best_root_chamfer, 0);
-  EXPECT_TRUE(std::any_of(lines.begin(), lines.end(),
-                          [](const std::string& line) { return line.starts_with("validation at 40"); }));
-  const TensorFile weights = export_completion(options.folder, {{"note", "kept"}});
+  ASSERT_EQ(reports.size(), 1U);
+  EXPECT_EQ(reports.front().event, TrainingEvent::validation);
+  EXPECT_EQ(reports.front().samples, 40U);
+  EXPECT_TRUE(reports.front().is_best);
+  EXPECT_EQ(reports.front().validation.at("root_chamfer_l1_mm"), result.best_root_chamfer);
+  const TensorFile weights = export_completion(options.loop.folder, {{"note", "kept"}});
   const auto& notes = weights.metadata;
   EXPECT_EQ(notes.at("note"), "kept");
   EXPECT_EQ(notes.at("training.samples"), "40");
@@ -197,11 +197,11 @@ TEST_F(Training, ValidationKeepsTheBestWeights) {
 }
 
 TEST_F(Training, ValidationSamplesAreNeverTrainedOn) {
-  TrainingOptions options = testing::tiny_options();
-  options.validation_samples = 4;
-  options.samples = 8;
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.validation_samples = 4;
+  options.loop.samples = 8;
   std::uint64_t validated = 0, trained = 0;
-  options.threads = 1;
+  options.loop.threads = 1;
   options.unknown_share = 0;
   train_completion(
       [&](std::uint64_t number) {
@@ -214,8 +214,8 @@ TEST_F(Training, ValidationSamplesAreNeverTrainedOn) {
 }
 
 TEST_F(Training, RefusesOptionsAndFoldersThatDoNotFit) {
-  TrainingOptions options = testing::tiny_options();
-  options.batch = 3;
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.batch = 3;
   EXPECT_THROW(train_completion(testing::tiny_sample, options), UsageError);
   options = testing::tiny_options();
   options.shape.width = 33;
@@ -223,10 +223,10 @@ TEST_F(Training, RefusesOptionsAndFoldersThatDoNotFit) {
   EXPECT_THROW(export_completion(folder_, {}), InputError);
 
   options = testing::tiny_options();
-  options.samples = 4;
-  options.folder = folder_ / "run";
+  options.loop.samples = 4;
+  options.loop.folder = folder_ / "run";
   train_completion(testing::tiny_sample, options);
-  options.resume = true;
+  options.loop.resume = true;
   options.shape.decoder_depth = 3;
   EXPECT_THROW(train_completion(testing::tiny_sample, options), InputError);
   options.shape.decoder_depth = 2;
@@ -258,8 +258,8 @@ TEST_F(Training, NetworkIsRepeatableAndIgnoresOrder) {
 }
 
 TEST_F(Training, NetworkRefusesBadCrowns) {
-  TrainingOptions options = testing::tiny_options();
-  options.samples = 4;
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.samples = 4;
   const CompletionNetwork network = short_run(options);
   const std::vector<Eigen::Vector3f> crown = testing::capsule(78, 64, 10).input;
   EXPECT_NO_THROW(network.complete(crown, 0, upright));
@@ -277,8 +277,8 @@ TEST_F(Training, NetworkRefusesBadCrowns) {
 }
 
 TEST_F(Training, NetworkRefusesOtherWeightFiles) {
-  TrainingOptions options = testing::tiny_options();
-  options.samples = 4;
+  CompletionTrainingOptions options = testing::tiny_options();
+  options.loop.samples = 4;
   short_run(options);
   const std::filesystem::path path = folder_ / "weights.safetensors";
   const TensorFile good = read_safetensors(path);

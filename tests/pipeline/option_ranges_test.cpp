@@ -394,30 +394,41 @@ TEST(OptionRanges, OfGeneratedTeeth) {
   expect_each_refused_by_name(faults);
 }
 
-/// What both trainers have in common.
-template <class Options>
-Faults<Options> training_faults(std::vector<Fault>& faults, const typename Faults<Options>::Use& use) {
-  return Faults<Options>(faults, use)
-      .of("batch", &Options::batch, {0})
-      .of("threads", &Options::threads, {0, 17})
-      .of("samples", &Options::samples, {std::uint64_t{0}})
-      .of("hours", &Options::hours, {-0.1})
-      .of("learning_rate", &Options::learning_rate, {0.0})
-      .of("lowest_rate", &Options::lowest_rate, {-0.1, 1.1})
-      .of("warm_up", &Options::warm_up, {-1})
-      .of("weight_decay", &Options::weight_decay, {-0.1})
-      .of("gradient_clip", &Options::gradient_clip, {0.0})
-      .of("average_decay", &Options::average_decay, {-0.1, 1.1})
-      .of("validation_samples", &Options::validation_samples, {-1})
-      .of("validation_minutes", &Options::validation_minutes, {-0.1})
-      .of("checkpoint_minutes", &Options::checkpoint_minutes, {-0.1})
-      .of("log_steps", &Options::log_steps, {0});
-}
-
 TEST(OptionRanges, OfTraining) {
   std::vector<Fault> faults;
-  using C = TrainingOptions;
-  training_faults<C>(faults, [](const C& o) { train_completion({}, o); })
+  const auto both = [](const TrainingLoopOptions& loop) {
+    CompletionTrainingOptions completion;
+    completion.loop = loop;
+    try {
+      train_completion({}, completion);
+      ADD_FAILURE() << "not refused by the trainer of the completion network";
+    } catch (const UsageError&) {
+    }
+    SurfaceTrainingOptions surface;
+    surface.loop = loop;
+    train_surface({}, surface);
+  };
+  using L = TrainingLoopOptions;
+  Faults<L>(faults, both)
+      .of("batch", &L::batch, {0})
+      .of("threads", &L::threads, {0, 17})
+      .of("samples", &L::samples, {std::uint64_t{0}})
+      .of("hours", &L::hours, {-0.1})
+      .of("learning_rate", &L::learning_rate, {0.0})
+      .of("lowest_rate", &L::lowest_rate, {-0.1, 1.1})
+      .of("warm_up", &L::warm_up, {-1})
+      .of("weight_decay", &L::weight_decay, {-0.1})
+      .of("gradient_clip", &L::gradient_clip, {0.0})
+      .of("average_decay", &L::average_decay, {-0.1, 1.1})
+      .of("validation_samples", &L::validation_samples, {-1})
+      .of("validation_minutes", &L::validation_minutes, {-0.1})
+      .of("checkpoint_minutes", &L::checkpoint_minutes, {-0.1})
+      .of("report_steps", &L::report_steps, {0})
+      .set("count", [](L& o) { o.processes.count = 0; })
+      .set("rank", [](L& o) { o.processes.rank = -1; })
+      .set("rank", [](L& o) { o.processes.rank = 1; });
+  using C = CompletionTrainingOptions;
+  Faults<C>(faults, [](const C& o) { train_completion({}, o); })
       .of("unknown_share", &C::unknown_share, {-0.1, 1.1})
       .of("root_weight", &C::root_weight, {0.0})
       .of("coarse_weight", &C::coarse_weight, {-0.1})
@@ -426,12 +437,9 @@ TEST(OptionRanges, OfTraining) {
       .of("normal_weight", &C::normal_weight, {-0.1})
       .of("spread_weight", &C::spread_weight, {-0.1})
       .of("denoise_queries", &C::denoise_queries, {-1})
-      .of("denoise_jitter", &C::denoise_jitter, {-0.1})
-      .set("count", [](C& o) { o.processes.count = 0; })
-      .set("rank", [](C& o) { o.processes.rank = -1; })
-      .set("rank", [](C& o) { o.processes.rank = 1; });
+      .of("denoise_jitter", &C::denoise_jitter, {-0.1});
   using S = SurfaceTrainingOptions;
-  training_faults<S>(faults, [](const S& o) { train_surface({}, o); })
+  Faults<S>(faults, [](const S& o) { train_surface({}, o); })
       .of("pool", &S::pool, {std::uint64_t{0}})
       .of("tilt_radians", &S::tilt_radians, {-0.1})
       .of("scale_deviation", &S::scale_deviation, {-0.1});

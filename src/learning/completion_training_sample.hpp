@@ -8,13 +8,13 @@
 #include <functional>
 #include <vector>
 
+#include "learning/completion_shape.hpp"
+
 namespace rhizodont {
 
-inline constexpr int tooth_types = 16;   ///< upper 1..8 are 0..7, lower 1..8 are 8..15; left and right share a type
-inline constexpr int unknown_type = 16;  ///< the type of a crown whose FDI number is not known
-
-/// One pair for the training of the completion network, in the canonical pose (unit 12 mm).
-struct TrainingSample {
+/// One pair for the training of the completion network, in the canonical pose (unit 12 mm): what inference would see of
+/// a crown, and the tooth it belongs to.
+struct CompletionTrainingSample {
   std::vector<Eigen::Vector3f> input;    ///< points on the cropped crown, any order, no duplicates
   std::vector<Eigen::Vector3f> target;   ///< points on the whole tooth, area-uniform, any order
   std::vector<Eigen::Vector3f> normals;  ///< unit outward normals of `target`
@@ -31,10 +31,7 @@ struct TrainingSample {
   std::vector<std::uint8_t> matched_root;        ///< 1 for places on the root, 0 on the crown
 };
 
-/// Numbers from here on belong to validation and are never trained on.
-inline constexpr std::uint64_t first_validation_sample = std::uint64_t{1} << 40;
-
 /// The training pair number `index`: the same index always gives the same sample. Called from several threads at once.
-using SampleProvider = std::function<TrainingSample(std::uint64_t index)>;
+using CompletionSampleProvider = std::function<CompletionTrainingSample(std::uint64_t index)>;
 
 }  // namespace rhizodont

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "learning/training_batch.hpp"
+#include "learning/completion_training_batch.hpp"
 
 #include <Eigen/Geometry>
 
@@ -77,7 +77,7 @@ void group(std::span<std::int32_t> indices, const std::vector<Eigen::Vector3f>& 
   group(indices.subspan(first), points, std::max<std::size_t>(groups - groups / 2, 1));
 }
 
-PointLayout layout_of(const TrainingSample& sample, const CompletionShape& shape) {
+PointLayout layout_of(const CompletionTrainingSample& sample, const CompletionShape& shape) {
   if (sample.matched.empty()) return {};
   PointLayout layout = spread_over_tooth(sample.matched, sample.matched_root, shape.queries * shape.patch_points);
   group(layout, sample.matched, static_cast<std::size_t>(shape.queries));
@@ -89,7 +89,8 @@ void append(std::vector<float>& numbers, const Eigen::Vector3f& vector) {
 }
 
 /// The sample's own points of a layout; without one, patches around points spread over the target.
-ToothPatches patches_of(const TrainingSample& sample, const PointLayout& layout, const CompletionShape& shape) {
+ToothPatches patches_of(const CompletionTrainingSample& sample, const PointLayout& layout,
+                        const CompletionShape& shape) {
   ToothPatches patches;
   for (const std::int32_t index : layout) {
     append(patches.points, sample.matched[static_cast<std::size_t>(index)]);
@@ -106,15 +107,15 @@ ToothPatches patches_of(const TrainingSample& sample, const PointLayout& layout,
   return patches;
 }
 
-float depth(const TrainingSample& sample) {
+float depth(const CompletionTrainingSample& sample) {
   float lowest = 0;
   for (const Eigen::Vector3f& p : sample.target) lowest = std::min(lowest, p.z());
   return lowest;
 }
 
 /// Disturbed middles of patches that are drawn at random, and where the points of these patches belong.
-void add_matched_seeds(const float* matched, const TrainingOptions& options, std::mt19937_64& random, float* seeds,
-                       std::int64_t* seed_patches, float* patches) {
+void add_matched_seeds(const float* matched, const CompletionTrainingOptions& options, std::mt19937_64& random,
+                       float* seeds, std::int64_t* seed_patches, float* patches) {
   const int each = options.shape.patch_points;
   std::uniform_int_distribution<int> patch(0, options.shape.queries - 1);
   std::normal_distribution<float> normal;
@@ -131,8 +132,8 @@ void add_matched_seeds(const float* matched, const TrainingOptions& options, std
 }
 
 /// Disturbed target points and what a patch that starts at each of them has to become.
-void add_seeds(const std::vector<float>& target, const TrainingOptions& options, std::mt19937_64& random, float* seeds,
-               float* patches) {
+void add_seeds(const std::vector<float>& target, const CompletionTrainingOptions& options, std::mt19937_64& random,
+               float* seeds, float* patches) {
   // Target points come in random order, so the first ones are spread like all of them.
   const auto count = static_cast<std::size_t>(options.denoise_queries);
   const std::span<const float> centres{target.data(), 3 * count};
@@ -159,7 +160,8 @@ void reserve(TargetBatch& target, std::int64_t count, std::int64_t points, std::
   target.denoise_target = torch::empty({count, seeds, shape.patch_points, 3});
 }
 
-void add_matches(const TrainingSample& sample, const PointLayout& layout, TargetBatch& target, std::int64_t b) {
+void add_matches(const CompletionTrainingSample& sample, const PointLayout& layout, TargetBatch& target,
+                 std::int64_t b) {
   float* points = target.matched[b].data_ptr<float>();
   float* normals = target.matched_normals[b].data_ptr<float>();
   float* root = target.matched_root[b].data_ptr<float>();
@@ -176,7 +178,7 @@ void add_matches(const TrainingSample& sample, const PointLayout& layout, Target
 
 }  // namespace
 
-void check_sample(const TrainingSample& sample, const CompletionShape& shape) {
+void check_completion_sample(const CompletionTrainingSample& sample, const CompletionShape& shape) {
   if (sample.input.size() < static_cast<std::size_t>(shape.input_points))
     throw InputError("A training sample has fewer crown points than the network looks at.");
   if (sample.target.empty() || sample.normals.size() != sample.target.size() ||
@@ -191,18 +193,20 @@ void check_sample(const TrainingSample& sample, const CompletionShape& shape) {
   if (sample.type < 0 || sample.type > unknown_type) throw InputError("A training sample's tooth type is unknown.");
 }
 
-TrainingBatch make_training_batch(const SampleProvider& provider, const std::vector<PointLayout>& layouts,
-                                  std::uint64_t first, int count, const TrainingOptions& options, bool training) {
+CompletionTrainingBatch make_completion_training_batch(const CompletionSampleProvider& provider,
+                                                       const std::vector<PointLayout>& layouts, std::uint64_t first,
+                                                       int count, const CompletionTrainingOptions& options,
+                                                       bool training) {
   std::vector<std::vector<float>> crowns;
   std::vector<std::int64_t> types;
   std::vector<float> form_axes;
-  TrainingBatch batch;
+  CompletionTrainingBatch batch;
   TargetBatch& target = batch.target;
   const std::int64_t seeds = training ? options.denoise_queries : 0;
   for (int b = 0; b < count; ++b) {
     const std::uint64_t number = first + static_cast<std::uint64_t>(b);
-    const TrainingSample sample = provider(number);
-    check_sample(sample, options.shape);
+    const CompletionTrainingSample sample = provider(number);
+    check_completion_sample(sample, options.shape);
     const auto points = static_cast<std::int64_t>(sample.target.size());
     if (b == 0) reserve(target, count, points, seeds, options.shape);
     if (points != target.points.size(1)) throw InputError("Training samples differ in their number of target points.");
@@ -213,7 +217,7 @@ TrainingBatch make_training_batch(const SampleProvider& provider, const std::vec
     std::copy(xyz.begin(), xyz.end(), target.points[b].data_ptr<float>());
     std::copy(normals.begin(), normals.end(), target.normals[b].data_ptr<float>());
     std::copy(sample.is_root.begin(), sample.is_root.end(), target.root[b].data_ptr<float>());
-    std::seed_seq sequence{options.seed, number >> 32, number & 0xffffffffU};
+    std::seed_seq sequence{options.loop.seed, number >> 32, number & 0xffffffffU};
     std::mt19937_64 random(sequence);
     const bool hide = training && std::uniform_real_distribution<double>(0, 1)(random) < options.unknown_share;
     const int type = hide ? unknown_type : sample.type;
@@ -237,14 +241,14 @@ TrainingBatch make_training_batch(const SampleProvider& provider, const std::vec
   return batch;
 }
 
-QueryLayout initial_layout(const SampleProvider& provider, const CompletionShape& shape) {
+QueryLayout initial_layout(const CompletionSampleProvider& provider, const CompletionShape& shape) {
   constexpr std::size_t samples_per_type = 7;
   constexpr std::uint64_t most_samples = 300;
-  std::array<std::vector<TrainingSample>, tooth_types> found;
+  std::array<std::vector<CompletionTrainingSample>, tooth_types> found;
   ToothPatches any;
   for (std::uint64_t number = 0; number < most_samples; ++number) {
-    TrainingSample sample = provider(number);
-    check_sample(sample, shape);
+    CompletionTrainingSample sample = provider(number);
+    check_completion_sample(sample, shape);
     if (any.points.empty()) any = patches_of(sample, {}, shape);
     if (sample.type == unknown_type) continue;
     auto& list = found[static_cast<std::size_t>(sample.type)];
@@ -261,8 +265,9 @@ QueryLayout initial_layout(const SampleProvider& provider, const CompletionShape
       continue;
     }
     const auto middle = list.begin() + static_cast<std::ptrdiff_t>(list.size() / 2);
-    std::nth_element(list.begin(), middle, list.end(),
-                     [](const TrainingSample& a, const TrainingSample& b) { return depth(a) < depth(b); });
+    std::nth_element(
+        list.begin(), middle, list.end(),
+        [](const CompletionTrainingSample& a, const CompletionTrainingSample& b) { return depth(a) < depth(b); });
     result.points.push_back(layout_of(*middle, shape));
     result.patches.push_back(patches_of(*middle, result.points.back(), shape));
   }

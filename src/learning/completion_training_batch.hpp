@@ -8,19 +8,19 @@
 #include <vector>
 
 #include "learning/adapointr.hpp"
+#include "learning/completion_training_sample.hpp"
 #include "learning/losses.hpp"
-#include "learning/training_sample.hpp"
 
 namespace rhizodont {
 
 /// Some samples as tensors.
-struct TrainingBatch {
+struct CompletionTrainingBatch {
   CrownBatch crowns;
   TargetBatch target;
 };
 
 /// Which of a type's corresponding points each point of the output is to become: queries x patch_points indices into
-/// TrainingSample::matched, those of a patch side by side. Empty for a type without correspondence.
+/// CompletionTrainingSample::matched, those of a patch side by side. Empty for a type without correspondence.
 using PointLayout = std::vector<std::int32_t>;
 
 /// The points that a type's output starts from: queries x patch_points x 3 numbers each.
@@ -37,17 +37,19 @@ struct QueryLayout {
 
 /// Throws InputError if a sample cannot be used: too few points, arrays of different lengths, values that are not
 /// finite, an unknown type.
-void check_sample(const TrainingSample& sample, const CompletionShape& shape);
+void check_completion_sample(const CompletionTrainingSample& sample, const CompletionShape& shape);
 
 /// Samples `first` .. `first + count - 1` of the provider. With `training`, some types are hidden and denoising seeds
 /// are added, both drawn from the options' seed and the sample's number alone.
 /// `layouts`: per type, as of initial_layout.
-TrainingBatch make_training_batch(const SampleProvider& provider, const std::vector<PointLayout>& layouts,
-                                  std::uint64_t first, int count, const TrainingOptions& options, bool training);
+CompletionTrainingBatch make_completion_training_batch(const CompletionSampleProvider& provider,
+                                                       const std::vector<PointLayout>& layouts, std::uint64_t first,
+                                                       int count, const CompletionTrainingOptions& options,
+                                                       bool training);
 
 /// Starting points of the queries and, where samples have corresponding points, the layout of the output.
 /// Both are spread over a tooth of median depth among a type's first samples, three quarters of the queries on the root
 /// as far as there are points; the patches of "unknown" are taken in turn from all types.
-QueryLayout initial_layout(const SampleProvider& provider, const CompletionShape& shape);
+QueryLayout initial_layout(const CompletionSampleProvider& provider, const CompletionShape& shape);
 
 }  // namespace rhizodont
