@@ -60,10 +60,8 @@ LabelledPanoramas training_panoramas(const ToothFamilies& families, const std::v
   return all;
 }
 
-/// Bounds by held-out crowns, of which every third is low and every second, where there are models, a model's crown
-/// without a template; and by what is no crown.
-LikenessBounds bounds_of(const ToothFamilies& families, const std::vector<ModelCrown>& crown_models,
-                         const ToothClassifier& classifier, int per_type) {
+/// Bounds by held-out crowns, of which every third is low, and by what is no crown.
+LikenessBounds bounds_of(const ToothFamilies& families, const ToothClassifier& classifier, int per_type) {
   std::vector<Likeness> crowns, strangers;
   std::vector<std::size_t> teeth;
   for (int i = 0; i < per_type; ++i)
@@ -71,8 +69,7 @@ LikenessBounds bounds_of(const ToothFamilies& families, const std::vector<ModelC
       const std::uint64_t seed = bounds_seed + static_cast<std::uint64_t>(i);
       RandomStream random(seed, 700 + static_cast<std::uint64_t>(type));
       try {
-        const auto modelled = i % 2 == 0 ? draw_model_crown_of_type(crown_models, type, random) : std::nullopt;
-        const SyntheticTooth tooth = modelled ? *modelled : generate_tooth(families, type, seed);
+        const SyntheticTooth tooth = generate_tooth(families, type, seed);
         const TriangleMesh crown = i % 3 == 0 ? draw_low_crown(tooth, random) : draw_scanned_crown(tooth, random);
         crowns.push_back(likeness(crown, growth_axis(crown), classifier));
         teeth.push_back(2 * static_cast<std::size_t>(type));
@@ -88,8 +85,7 @@ LikenessBounds bounds_of(const ToothFamilies& families, const std::vector<ModelC
 /// Sets the bounds of a file of weights anew.
 void set_bounds(const std::filesystem::path& data, const std::filesystem::path& file, int per_type) {
   TensorFile weights = read_safetensors(file);
-  const LikenessBounds bounds = bounds_of(load_tooth_families(data), load_model_crowns(data / crown_models_folder),
-                                          ToothClassifier(weights), per_type);
+  const LikenessBounds bounds = bounds_of(load_tooth_families(data), ToothClassifier(weights), per_type);
   note_bounds(bounds, weights);
   write_safetensors(file, weights);
   fmt::print("{}: bounds {:.2f}, {:.2f}, {:.2f}\n", file.string(), bounds.other_tooth, bounds.unlike, bounds.refused);
@@ -108,7 +104,7 @@ void fit(const std::filesystem::path& data, const std::filesystem::path& file, i
     std::fflush(stdout);
   };
   TensorFile weights = train_classifier(panoramas, options);
-  const LikenessBounds bounds = bounds_of(families, crown_models, ToothClassifier(weights), std::max(60, per_type / 4));
+  const LikenessBounds bounds = bounds_of(families, ToothClassifier(weights), std::max(60, per_type / 4));
   note_bounds(bounds, weights);
   weights.metadata["content"] = "A network that tells which tooth a crown is (src/completion/tooth_classifier.hpp)";
   weights.metadata["training.panoramas"] = std::to_string(panoramas.labels.size());

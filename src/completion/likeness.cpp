@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rhizodont {
 namespace {
@@ -36,7 +37,16 @@ void note_bounds(const LikenessBounds& bounds, TensorFile& weights) {
 }
 
 double Likeness::lead_over(std::size_t tooth) const {
-  return *std::max_element(log_probability.begin(), log_probability.end()) - log_probability.at(tooth);
+  constexpr std::size_t sides = 2, teeth_of_quadrant = 8, first_molar = 5, third_molar = 7;
+  const auto place = [](std::size_t t) { return t / sides % teeth_of_quadrant; };
+  const auto quadrant = [](std::size_t t) { return std::pair(t / (sides * teeth_of_quadrant), t % sides); };
+  const double own = log_probability.at(tooth);
+  double most = own;
+  for (std::size_t t = 0; t < tooth_count; ++t) {
+    const bool tells_nothing = place(tooth) == third_molar && place(t) >= first_molar && quadrant(t) == quadrant(tooth);
+    if (!tells_nothing) most = std::max(most, log_probability[t]);
+  }
+  return most - own;
 }
 
 Likeness likeness(const TriangleMesh& open_crown, const Eigen::Vector3d& growth_axis,
@@ -55,7 +65,7 @@ Likeness likeness(const TriangleMesh& open_crown, const Eigen::Vector3d& growth_
 LikenessBounds likeness_bounds(const std::vector<Likeness>& crowns, const std::vector<std::size_t>& teeth,
                                const std::vector<Likeness>& strangers) {
   constexpr std::size_t fewest = 500, fewest_strangers = 100;
-  constexpr double passing = 0.995, strangers_missed = 0.02, sides_missed = 0.18, strangers_not_refused = 0.5;
+  constexpr double passing = 0.995, strangers_missed = 0.04, sides_missed = 0.19, strangers_not_refused = 0.5;
   if (crowns.size() != teeth.size() || crowns.size() < fewest || strangers.size() < fewest_strangers)
     throw UsageError("Bounds need at least 500 crowns, each with its tooth, and 100 strangers.");
   std::vector<double> lead, wrong_side, unlike, strange;

@@ -49,6 +49,18 @@ TEST(Likeness, ProbabilitiesSumToOneAndLeadsStartAtNone) {
   EXPECT_LE(judged.lead_over(tooth_of_fdi(34)), shipped().bounds.other_tooth);
 }
 
+TEST(Likeness, AThirdMolarMayBeLikeItsNeighboursButLikeNoOtherTooth) {
+  Likeness judged;
+  judged.log_probability.fill(-9);
+  judged.log_probability[tooth_of_fdi(27)] = -0.1;
+  judged.log_probability[tooth_of_fdi(25)] = -3;
+  EXPECT_DOUBLE_EQ(judged.lead_over(tooth_of_fdi(28)), 6) << "over 25; 27 does not count";
+  EXPECT_DOUBLE_EQ(judged.lead_over(tooth_of_fdi(26)), 8.9) << "a first molar is known well enough";
+  EXPECT_DOUBLE_EQ(judged.lead_over(tooth_of_fdi(18)), 8.9) << "27 is of the other side";
+  EXPECT_DOUBLE_EQ(judged.lead_over(tooth_of_fdi(38)), 8.9) << "and of the other jaw";
+  EXPECT_DOUBLE_EQ(judged.lead_over(tooth_of_fdi(27)), 0);
+}
+
 TEST(Likeness, DoesNotDependOnWhereTheCrownIs) {
   TriangleMesh crown = sample("crown_36.stl");
   const Likeness before = likeness_of(crown);
