@@ -97,11 +97,11 @@ TEST(Likeness, BoundsLieAsFarFromCrownsAsStrangersAndSidesAllow) {
   // Easily told: the bounds are those of what they are there for.
   const std::vector<Likeness> easy = rising(2000, -1e5, -1e4);
   const LikenessBounds bounds = likeness_bounds(easy, teeth, strangers);
-  EXPECT_EQ(above(bounds.unlike, strangers), 979);
+  EXPECT_EQ(above(bounds.unlike, strangers), 959);
   EXPECT_EQ(above(bounds.refused, strangers), 499);
   EXPECT_EQ(
       std::count_if(easy.begin(), easy.end(), [&](const Likeness& l) { return l.lead_over(2) > bounds.other_tooth; }),
-      1639);
+      1619);
   // Hardly told: the crowns come first.
   const std::vector<Likeness> hard = rising(2000, 0, 0);
   const LikenessBounds late = likeness_bounds(hard, teeth, strangers);
