@@ -12,6 +12,7 @@
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/frame.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -170,11 +171,7 @@ void compare_apices(const TriangleMesh& truth, const TriangleMesh& predicted, co
 
 Eigen::Vector3d crown_growth_axis(const TriangleMesh& crown) {
   require_surface(crown, "The crown");
-  const Eigen::Vector3d sum = area_vector(crown);
-  // Of a crown open at its base the sum is as large as the opening, about a fifth of the surface.
-  if (!(sum.norm() > 1e-3 * surface_area(crown)))
-    throw InputError("The crown is closed: it has no border that would tell where its root is.");
-  return sum.normalized();
+  return growth_axis(crown);
 }
 
 RootFigures root_figures(const TriangleMesh& crown, const TriangleMesh& truth, const TriangleMesh& predicted,

@@ -23,6 +23,22 @@ void maybe_add_skirt(TriangleMesh& crown, RandomStream& random) {
   if (random.chance(skirt_probability)) add_skirt_remains(crown, skirt_mm, random);
 }
 
+/// Where teeth stand crowded a scanner does not see between them, up to near the edge or the cusps. Nothing where ten
+/// gum lines left no disc.
+std::optional<TriangleMesh> draw_crowded_crown(const SyntheticTooth& tooth, RandomStream& random) {
+  constexpr double side_probability = 0.75, highest_share = 0.85;
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    GumLine line = draw_gum_line(tooth, paper_share, gap_probability, random);
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (!random.chance(side_probability)) continue;
+      line.gap_mm[side] = random.uniform(0, highest_share) * tooth.crown_height;
+      line.gap_width[side] = random.uniform(0.2, 0.6);
+    }
+    if (auto crown = crop_crown(tooth, line)) return crown;
+  }
+  return std::nullopt;
+}
+
 /// Borders are ragged: axis and middle found from them differ from scan to scan.
 CrownPanorama seen_from_beside(const TriangleMesh& crown, RandomStream& random) {
   constexpr double lean = 0.06, aside_mm = 0.25;
@@ -38,24 +54,12 @@ CrownPanorama seen_from_beside(const TriangleMesh& crown, RandomStream& random) 
 }  // namespace
 
 TriangleMesh draw_scanned_crown(const SyntheticTooth& tooth, RandomStream& random) {
-  // Where teeth stand crowded a scanner does not see between them, up to near the edge or the cusps.
-  constexpr double crowded_probability = 0.35, side_probability = 0.75, highest_share = 0.85;
-  TriangleMesh crown = [&] {
-    if (!random.chance(crowded_probability))
-      return draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh;
-    for (int attempt = 0; attempt < 10; ++attempt) {
-      GumLine line = draw_gum_line(tooth, paper_share, gap_probability, random);
-      for (std::size_t side = 0; side < 2; ++side) {
-        if (!random.chance(side_probability)) continue;
-        line.gap_mm[side] = random.uniform(0, highest_share) * tooth.crown_height;
-        line.gap_width[side] = random.uniform(0.2, 0.6);
-      }
-      if (auto crop = crop_crown(tooth, line)) return *std::move(crop);
-    }
-    return draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh;
-  }();
-  maybe_add_skirt(crown, random);
-  return crown;
+  constexpr double crowded_probability = 0.35;
+  std::optional<TriangleMesh> crown;
+  if (random.chance(crowded_probability)) crown = draw_crowded_crown(tooth, random);
+  if (!crown) crown = draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh;
+  maybe_add_skirt(*crown, random);
+  return *std::move(crown);
 }
 
 TriangleMesh draw_low_crown(const SyntheticTooth& tooth, RandomStream& random) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "common/temporary_folder.hpp"
 #include "learning/safetensors.hpp"
 #include "learning/surface_network.hpp"
 #include "learning/surfaces.hpp"
@@ -22,12 +23,8 @@ SurfaceSample bowl_sample(std::uint64_t index) {
 
 class SurfaceTraining : public ::testing::Test {
  protected:
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) /
-      (std::string("rhizodont_surface_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-
-  void SetUp() override { std::filesystem::remove_all(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
 
   SurfaceTrainingOptions options(const std::string& run) const {
     SurfaceTrainingOptions o;
@@ -44,8 +41,7 @@ class SurfaceTraining : public ::testing::Test {
   }
 
   std::string checkpoint(const std::string& run) const {
-    std::ifstream stream(folder_ / run / "checkpoint.safetensors", std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
+    return test::read_all(folder_ / run / "checkpoint.safetensors");
   }
 };
 

@@ -14,6 +14,7 @@
 #include <set>
 #include <thread>
 
+#include "common/temporary_folder.hpp"
 #include "learning/checkpoint.hpp"
 #include "rhizodont/error.hpp"
 
@@ -54,12 +55,8 @@ struct Line {
 
 class Loop : public ::testing::Test {
  protected:
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) /
-      (std::string("rhizodont_loop_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-
-  void SetUp() override { std::filesystem::remove_all(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
 
   TrainingLoopOptions options(const std::string& run) const {
     TrainingLoopOptions o;
@@ -74,8 +71,7 @@ class Loop : public ::testing::Test {
   }
 
   std::string bytes(const std::string& run, const char* name = checkpoint_name) const {
-    std::ifstream stream(folder_ / run / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
+    return test::read_all(folder_ / run / name);
   }
 };
 

@@ -9,6 +9,7 @@
 #include <random>
 #include <thread>
 
+#include "common/temporary_folder.hpp"
 #include "learning/capsules.hpp"
 #include "learning/completion_network.hpp"
 #include "learning/safetensors.hpp"
@@ -22,16 +23,11 @@ const Eigen::Vector2f upright(0, 0);
 
 class Training : public ::testing::Test {
  protected:
-  std::filesystem::path folder_ =
-      std::filesystem::path(::testing::TempDir()) /
-      (std::string("rhizodont_train_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
-
-  void SetUp() override { std::filesystem::remove_all(folder_); }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
 
   std::string checkpoint(const std::string& run) const {
-    std::ifstream stream(folder_ / run / "checkpoint.safetensors", std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
+    return test::read_all(folder_ / run / "checkpoint.safetensors");
   }
 
   /// Weights of a short run.
