@@ -7,7 +7,7 @@
 #include "evaluation/template_predictor.hpp"
 #include "json_option.hpp"
 #include "learning/blas.hpp"
-#include "learning/safetensors.hpp"
+#include "networks/safetensors.hpp"
 #include "output_checks.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "commands.hpp"
 #include "learning/blas.hpp"
-#include "learning/safetensors.hpp"
 #include "learning/train_surface.hpp"
 #include "learning/training_sample.hpp"
+#include "networks/safetensors.hpp"
 #include "output_checks.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/output_files.hpp"

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "learning/adapointr.hpp"
-#include "learning/safetensors.hpp"
 #include "learning/threads.hpp"
 #include "learning/weights.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

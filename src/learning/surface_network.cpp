@@ -5,9 +5,9 @@
 #include "learning/surface_network.hpp"
 
 #include "learning/diffusion_net.hpp"
-#include "learning/safetensors.hpp"
 #include "learning/threads.hpp"
 #include "learning/weights.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

@@ -8,19 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "learning/surface_sample.hpp"
+#include "networks/surface_sample.hpp"
+#include "networks/surface_shape.hpp"
 
 namespace rhizodont {
-
-/// Sizes of a surface network, and what it looks at. The defaults are those of the shipped weights.
-struct SurfaceShape {
-  int width = 64;            ///< channels, 1..1024
-  int blocks = 4;            ///< 1..64
-  int eigenvectors = 48;     ///< of the surface's operators, that diffusion takes place in, 1..1024
-  bool position = true;      ///< features: positions
-  bool signature = true;     ///< heat kernel signatures
-  bool surroundings = true;  ///< normals, distances to the border, curvature
-};
 
 /// A network that gives each vertex of a surface a probability (DiffusionNet: N. Sharp et al., 2022), with its weights.
 /// Holds no state besides these: may be used from several threads at once.

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "learning/safetensors.hpp"
+#include "networks/safetensors.hpp"
 
 #include <cstddef>
 #include <cstdint>

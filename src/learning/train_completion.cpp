@@ -20,10 +20,10 @@
 #include "learning/losses.hpp"
 #include "learning/optimiser.hpp"
 #include "learning/process_group.hpp"
-#include "learning/safetensors.hpp"
 #include "learning/threads.hpp"
 #include "learning/training_batch.hpp"
 #include "learning/weights.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

@@ -8,24 +8,11 @@
 #include <map>
 #include <string>
 
-#include "learning/safetensors.hpp"
 #include "learning/training_sample.hpp"
+#include "networks/completion_shape.hpp"
+#include "networks/safetensors.hpp"
 
 namespace rhizodont {
-
-/// Sizes of the completion network. The defaults are those of the shipped weights.
-struct CompletionShape {
-  int input_points = 1024;  ///< crown points that the network looks at, >= centres_1
-  int centres_1 = 256;      ///< points left after the grouper's first thinning, >= centres_2
-  int centres_2 = 128;      ///< tokens of the encoder, >= 16
-  int width = 192;          ///< channels of a token, a multiple of `heads`
-  int heads = 3;            ///< attention heads, >= 1
-  int encoder_depth = 4;    ///< blocks, >= 1
-  int decoder_depth = 4;    ///< blocks, >= 1
-  int global_width = 384;   ///< channels of the global feature, >= 1
-  int queries = 256;        ///< patches of the output, >= 8
-  int patch_points = 12;    ///< points per patch, >= 1
-};
 
 /// Which of several processes this one is.
 struct ProcessOptions {

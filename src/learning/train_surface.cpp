@@ -17,10 +17,10 @@
 #include "learning/checkpoint.hpp"
 #include "learning/diffusion_net.hpp"
 #include "learning/optimiser.hpp"
-#include "learning/safetensors.hpp"
 #include "learning/threads.hpp"
 #include "learning/training_sample.hpp"
 #include "learning/weights.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

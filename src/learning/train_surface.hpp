@@ -8,9 +8,9 @@
 #include <map>
 #include <string>
 
-#include "learning/safetensors.hpp"
 #include "learning/surface_network.hpp"
-#include "learning/surface_sample.hpp"
+#include "networks/safetensors.hpp"
+#include "networks/surface_sample.hpp"
 
 namespace rhizodont {
 

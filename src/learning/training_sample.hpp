@@ -8,10 +8,9 @@
 #include <functional>
 #include <vector>
 
-namespace rhizodont {
+#include "networks/completion_shape.hpp"
 
-inline constexpr int tooth_types = 16;   ///< upper 1..8 are 0..7, lower 1..8 are 8..15; left and right share a type
-inline constexpr int unknown_type = 16;  ///< the type of a crown whose FDI number is not known
+namespace rhizodont {
 
 /// One pair for the training of the completion network, in the canonical pose (unit 12 mm).
 struct TrainingSample {

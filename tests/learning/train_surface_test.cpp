@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "learning/safetensors.hpp"
 #include "learning/surface_network.hpp"
 #include "learning/surfaces.hpp"
 #include "learning/train_surface.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

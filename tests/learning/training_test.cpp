@@ -11,8 +11,8 @@
 
 #include "learning/capsules.hpp"
 #include "learning/completion_network.hpp"
-#include "learning/safetensors.hpp"
 #include "learning/train_completion.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

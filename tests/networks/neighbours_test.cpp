@@ -1,16 +1,14 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "learning/neighbours.hpp"
+#include "networks/neighbours.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <numeric>
 #include <random>
 #include <set>
 
-#include "learning/blas.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {
@@ -117,15 +115,6 @@ TEST(Neighbours, CoincidingPointsAreEachChosenOnce) {
   const std::vector<float> same(3 * 20, 0.5F);
   const auto order = farthest_point_order(same, 20);
   EXPECT_EQ(std::set<std::int32_t>(order.begin(), order.end()).size(), 20U);
-}
-
-TEST(Blas, TheFastOneIsLoaded) {
-  const LoadedBlas blas = loaded_blas();
-  EXPECT_NE(blas.path.find("blas"), std::string::npos);
-  EXPECT_EQ(blas.fast, blas_warning().empty());
-  if (std::filesystem::exists("/usr/lib/x86_64-linux-gnu/openblas-openmp/libblas.so.3")) {
-    EXPECT_TRUE(blas.fast);
-  }
 }
 
 }  // namespace

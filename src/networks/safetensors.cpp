@@ -3,7 +3,7 @@
 //
 // The safetensors format, as described at huggingface.co/docs/safetensors: a little-endian 64-bit header length, a JSON
 // object that maps names to element type, shape and byte range, then the data without gaps.
-#include "learning/safetensors.hpp"
+#include "networks/safetensors.hpp"
 
 #include <nlohmann/json.hpp>
 

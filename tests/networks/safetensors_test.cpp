@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "learning/safetensors.hpp"
+#include "networks/safetensors.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "learning/neighbours.hpp"
+#include "networks/neighbours.hpp"
 
 #include <algorithm>
 #include <array>
