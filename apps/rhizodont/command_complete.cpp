@@ -3,7 +3,6 @@
 #include "commands.hpp"
 #include "complete_jobs.hpp"
 #include "io/cursors.hpp"
-#include "learning/blas.hpp"
 #include "number_options.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
@@ -262,7 +261,6 @@ class Completion {
 };
 
 void run(const CompleteCommand& command) {
-  if (const std::string warning = blas_warning(); !warning.empty()) fmt::print(stderr, "rhizodont: {}\n", warning);
   const int code = Completion(command).run();
   if (code != 0) exit_with(code);
 }

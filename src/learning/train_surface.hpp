@@ -8,8 +8,8 @@
 #include <map>
 #include <string>
 
-#include "learning/surface_network.hpp"
 #include "networks/safetensors.hpp"
+#include "networks/surface_network.hpp"
 #include "networks/surface_sample.hpp"
 
 namespace rhizodont {

@@ -12,16 +12,20 @@
 namespace rhizodont {
 namespace {
 
-// Sixteen floats fill one AVX-512 register; the compiler splits them for narrower processors. This file is compiled
-// without fused multiply-add, so that all processors find the same neighbours.
-constexpr std::size_t lanes = 16;
+// Eight floats fill one AVX register; compilers split wider vectors badly for processors without AVX-512. This file is
+// compiled without fused multiply-add, so that all processors find the same neighbours.
+constexpr std::size_t lanes = 8;
 using Floats = float __attribute__((vector_size(lanes * sizeof(float))));
 using Integers = std::int32_t __attribute__((vector_size(lanes * sizeof(std::int32_t))));
-// The same sixteen floats where they lie in a plain array.
+// The same floats where they lie in a plain array.
 using FloatsInMemory = float __attribute__((vector_size(lanes * sizeof(float)), aligned(alignof(float)), may_alias));
 
 const FloatsInMemory& at(const std::vector<float>& values, std::size_t block) {
   return *reinterpret_cast<const FloatsInMemory*>(values.data() + block * lanes);
+}
+
+const FloatsInMemory& at(const float* values, std::size_t block) {
+  return *reinterpret_cast<const FloatsInMemory*>(values + block * lanes);
 }
 
 FloatsInMemory& at(float* values, std::size_t block) {
@@ -50,8 +54,8 @@ struct Columns {
 constexpr std::size_t queries_at_once = 4;  // keeps the keys' registers busy while distances and minima stay in others
 
 /// Closest keys of `queries_at_once` queries, each lane for itself.
-[[gnu::target_clones("avx512f", "avx2", "default")]] void scan_keys(const Columns& keys, const float* queries,
-                                                                    Floats* best, Integers* best_block) {
+[[gnu::target_clones("avx2", "default")]] void scan_keys(const Columns& keys, const float* queries, Floats* best,
+                                                         Integers* best_block) {
   Floats qx[queries_at_once], qy[queries_at_once], qz[queries_at_once], minimum[queries_at_once];
   Integers where[queries_at_once];
   for (std::size_t q = 0; q < queries_at_once; ++q) {
@@ -80,8 +84,7 @@ constexpr std::size_t queries_at_once = 4;  // keeps the keys' registers busy wh
 }
 
 /// Squared distances of one point to all keys.
-[[gnu::target_clones("avx512f", "avx2", "default")]] void measure(const Columns& keys, const float* point,
-                                                                  float* distances) {
+[[gnu::target_clones("avx2", "default")]] void measure(const Columns& keys, const float* point, float* distances) {
   const Floats px = Floats{} + point[0], py = Floats{} + point[1], pz = Floats{} + point[2];
   for (std::size_t block = 0; block < keys.blocks; ++block) {
     const Floats dx = at(keys.x, block) - px, dy = at(keys.y, block) - py, dz = at(keys.z, block) - pz;
@@ -89,10 +92,22 @@ constexpr std::size_t queries_at_once = 4;  // keeps the keys' registers busy wh
   }
 }
 
+/// The first block from `block` on that holds a distance below `limit`; `blocks` if there is none.
+[[gnu::target_clones("avx2", "default")]] std::size_t block_below(const float* distances, std::size_t block,
+                                                                  std::size_t blocks, float limit) {
+  using Halves = std::int64_t __attribute__((vector_size(lanes * sizeof(std::int32_t))));
+  for (; block < blocks; ++block) {
+    const Integers below = at(distances, block) < limit;
+    const auto halves = reinterpret_cast<Halves>(below);
+    if ((halves[0] | halves[1] | halves[2] | halves[3]) != 0) break;
+  }
+  return block;
+}
+
 /// Lowers each key's distance to the chosen set by its distance to one more point; per lane, returns the largest.
-[[gnu::target_clones("avx512f", "avx2", "default")]] void lower_distances(const Columns& keys, const float* point,
-                                                                          float* distances, Floats* largest,
-                                                                          Integers* largest_block) {
+[[gnu::target_clones("avx2", "default")]] void lower_distances(const Columns& keys, const float* point,
+                                                               float* distances, Floats* largest,
+                                                               Integers* largest_block) {
   const Floats px = Floats{} + point[0], py = Floats{} + point[1], pz = Floats{} + point[2];
   Floats maximum = Floats{} - 2.0F;
   Integers where{}, block_index{};
@@ -157,9 +172,9 @@ std::vector<std::int32_t> nearest_keys(std::span<const float> queries_xyz, std::
     measure(keys, queries_xyz.data() + 3 * q, distances.data());
     std::int32_t* indices = result.data() + q * wanted;
     std::size_t held = 0;
-    for (std::size_t key = 0; key < keys.size; ++key) {
+    const auto offer = [&](std::size_t key) {
       const float distance = distances[key];
-      if (held == wanted && !(distance < nearest[wanted - 1])) continue;
+      if (held == wanted && !(distance < nearest[wanted - 1])) return;
       std::size_t place = held < wanted ? held++ : wanted - 1;
       for (; place > 0 && distance < nearest[place - 1]; --place) {
         nearest[place] = nearest[place - 1];
@@ -167,6 +182,13 @@ std::vector<std::int32_t> nearest_keys(std::span<const float> queries_xyz, std::
       }
       nearest[place] = distance;
       indices[place] = static_cast<std::int32_t>(key);
+    };
+    std::size_t block = std::min(keys.blocks, (wanted + lanes - 1) / lanes);
+    for (std::size_t key = 0; key < std::min(block * lanes, keys.size); ++key) offer(key);
+    // Most blocks hold nothing that is nearer than what was found before.
+    while ((block = block_below(distances.data(), block, keys.blocks, nearest[wanted - 1])) < keys.blocks) {
+      for (std::size_t key = block * lanes; key < std::min((block + 1) * lanes, keys.size); ++key) offer(key);
+      ++block;
     }
   }
   return result;

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <fstream>
 
-#include "learning/surface_network.hpp"
 #include "learning/surfaces.hpp"
 #include "learning/train_surface.hpp"
 #include "networks/safetensors.hpp"
+#include "networks/surface_network.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

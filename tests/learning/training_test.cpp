@@ -10,8 +10,8 @@
 #include <thread>
 
 #include "learning/capsules.hpp"
-#include "learning/completion_network.hpp"
 #include "learning/train_completion.hpp"
+#include "networks/completion_network.hpp"
 #include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 

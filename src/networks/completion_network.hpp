@@ -20,9 +20,16 @@ struct CompletedPoints {
   std::vector<float> spread;             ///< > 0: how far off a point is expected to be, on average
 };
 
+/// A crown as the network takes it: see CompletionNetwork::complete.
+struct CrownPoints {
+  std::vector<Eigen::Vector3f> points;
+  int type = 0;
+  Eigen::Vector2f form_axis = Eigen::Vector2f::Zero();
+};
+
 /// The completion network with its weights: crown points in, points of the whole tooth out (AdaPoinTr, see
-/// `adapointr.hpp` for how it differs from the published one). Holds no state besides the weights: `complete` may be
-/// called from several threads at once.
+/// `learning/adapointr.hpp` for how it differs from the published one). Holds no state besides the weights: `complete`
+/// may be called from several threads at once.
 class CompletionNetwork {
  public:
   /// Reads weights written by the trainer. Throws InputError if the file is unreadable, damaged or of another network.
@@ -34,11 +41,14 @@ class CompletionNetwork {
 
   /// Completes a crown. `crown`: distinct points spread over the crown's surface in the canonical pose, in any order,
   /// at least `input_points()` of them; more are thinned by farthest-point sampling. `type` is 0..15 or `unknown_type`;
-  /// `form_axis`: x and y of the axis of the crown's form, where z is that of its border (TrainingSample::form_axis).
+  /// `form_axis`: x and y of the axis of the crown's form, where z is that of its border (as in training).
   /// The result depends neither on the order of the points nor on the number of threads.
   /// Throws InputError for an axis that is not a number and for too few, non-finite or coinciding points or points far
   /// outside of the pose's cube (|x| > 4), UsageError for another type.
   CompletedPoints complete(std::span<const Eigen::Vector3f> crown, int type, const Eigen::Vector2f& form_axis) const;
+
+  /// The same for several crowns at once, say of an arch, side by side: in their order, each to the bit as alone.
+  std::vector<CompletedPoints> complete(std::span<const CrownPoints> crowns) const;
 
   /// Number of crown points that the network looks at (1024 in the shipped weights).
   int input_points() const;
