@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Time of the finished networks beside the trainers' own forward pass in float on the same crowns, in one run:
-// bench_networks DATA MODELS. Processor milliseconds of all threads stand beside those of the clock.
+// bench_networks DATA MODELS. Compared on one thread each: where other work shares the processor, OpenMP's threads spin
+// at every barrier of torch, and more of them would time the waiting.
 #include "common/bench_teeth.hpp"
 #include "common/stopwatch.hpp"
 #include "completion/mean_crowns.hpp"
@@ -18,6 +19,7 @@
 #include "skirt/skirt_network.hpp"
 
 #include <fmt/core.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -26,7 +28,6 @@
 #include <filesystem>
 #include <functional>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace {
@@ -46,9 +47,15 @@ Milliseconds measured(const std::function<void()>& work, int items, int repeats 
   return {1000 * seconds / items, 1000 * processor / items};
 }
 
-void print_row(const std::string& what, const Milliseconds& ours, const Milliseconds& theirs) {
-  fmt::print("| {} | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.2f} |\n", what, ours.clock, ours.processor, theirs.clock,
-             theirs.processor, theirs.processor / ours.processor);
+/// Ours on one thread and on all, torch's on one.
+void print_row(const std::string& what, int items, const std::function<void()>& ours,
+               const std::function<void()>& theirs) {
+  const Milliseconds all = measured(ours, items);
+  const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
+  const TensorThreads one_thread(1);
+  const Milliseconds one = measured(ours, items), torch = measured(theirs, items);
+  fmt::print("| {} | {:.1f} | {:.1f} | {:.2f} | {:.1f} | {:.1f} |\n", what, one.processor, torch.processor,
+             torch.processor / one.processor, all.clock, all.processor);
   std::fflush(stdout);
 }
 
@@ -92,8 +99,8 @@ void time_completion(const std::vector<BenchTooth>& teeth, const std::filesystem
       trainers->forward(make_crown_batch(shape, points, types, axes), {}, {}, layers::Precision::single);
     };
     const int items = static_cast<int>(batch);
-    print_row(fmt::format("completion, crowns at once: {}", batch), measured([&] { ours.complete(crowns); }, items),
-              measured(forward, items));
+    print_row(
+        fmt::format("completion, crowns at once: {}", batch), items, [&] { ours.complete(crowns); }, forward);
   }
 }
 
@@ -107,18 +114,20 @@ void time_skirt(const TriangleMesh& crown, const std::filesystem::path& models) 
     torch::NoGradGuard no_gradient;
     trainers->forward(to_tensors(surface, false));
   };
-  print_row(fmt::format("skirt, {} vertices", surface.vertices), measured([&] { ours.confidence(surface); }, 1),
-            measured(forward, 1));
+  print_row(
+      fmt::format("skirt, {} vertices", surface.vertices), 1, [&] { ours.confidence(surface); }, forward);
 }
 
 void run(const std::filesystem::path& data, const std::filesystem::path& models) {
-  const TensorThreads threads(static_cast<int>(std::thread::hardware_concurrency()));
-  fmt::print("Milliseconds per crown; all of the processor's threads for both.\n\n");
-  fmt::print("| | clock | processor | torch: clock | torch: processor | torch / ours, processor |\n");
-  fmt::print("|---|---|---|---|---|---|\n");
+  fmt::print("Milliseconds per crown.\n\n");
+  fmt::print("| | one thread, processor | torch, one thread, processor | torch / ours | all threads, clock | ");
+  fmt::print("all threads, processor |\n|---|---|---|---|---|---|\n");
   const std::vector<BenchTooth> teeth = load_validation_teeth(data);
   time_completion(teeth, models);
-  time_skirt(decimated(refined(teeth.front().crown), 5000), models);
+  constexpr std::size_t vertices = 5000;
+  TriangleMesh crown = teeth.front().crown;
+  while (crown.vertices.size() < vertices) crown = refined(crown);
+  time_skirt(decimated(crown, vertices), models);
   for (const char* name : {"completion.safetensors", "skirt.safetensors"}) {
     const double seconds = median_seconds([&] {
       if (std::string(name).starts_with("c"))
