@@ -25,7 +25,8 @@ set_target_properties(rhizodont_library rhizodont PROPERTIES INSTALL_RPATH_USE_L
 
 install(TARGETS rhizodont_library EXPORT RhizodontTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS rhizodont RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(DIRECTORY include/rhizodont DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY include/rhizodont ${CMAKE_CURRENT_BINARY_DIR}/include/rhizodont
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rhizodont/models)
 install(EXPORT RhizodontTargets NAMESPACE Rhizodont:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont)
 configure_package_config_file(cmake/RhizodontConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfig.cmake

@@ -2,13 +2,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 # One room of the library: a static library rhizodont_<name> made of the sources of src/<name>.
-#   rhizodont_room(<name> SOURCES a.cpp ... [USES room ...] [LINKS target ...] [PRIVATE_LINKS target ...])
+#   rhizodont_room(<name> SOURCES a.cpp ... [USES room ...] [LINKS target ...] [PRIVATE_LINKS target ...]
+#                  [APART])   # not in the shared library
 function(rhizodont_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;USES;LINKS;PRIVATE_LINKS" ${ARGN})
+  cmake_parse_arguments(ROOM "APART" "" "SOURCES;USES;LINKS;PRIVATE_LINKS" ${ARGN})
   set(target rhizodont_${name})
   add_library(${target} STATIC ${ROOM_SOURCES})
   target_include_directories(${target}
-    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:include>
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_BINARY_DIR}/include>
+           $<INSTALL_INTERFACE:include>
            $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC Eigen3::Eigen ${ROOM_LINKS} PRIVATE ${ROOM_PRIVATE_LINKS})
@@ -16,7 +18,9 @@ function(rhizodont_room name)
     target_link_libraries(${target} PUBLIC rhizodont_${used})
   endforeach()
   rhizodont_warnings(${target})
-  set_property(GLOBAL APPEND PROPERTY RHIZODONT_ROOMS ${target})
+  if(NOT ROOM_APART)
+    set_property(GLOBAL APPEND PROPERTY RHIZODONT_ROOMS ${target})
+  endif()
 endfunction()
 
 function(rhizodont_warnings target)

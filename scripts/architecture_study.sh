@@ -11,7 +11,7 @@ cd "$(dirname "$0")/.."
 data=${1:?folder with templates/}
 out=${2:?where the runs go}
 minutes=${3:-20}
-program=build/apps/rhizodont/rhizodont
+program=build/apps/rhizodont-train/rhizodont-train
 TIMEFORMAT='%U %S'
 mkdir -p "$out"
 
@@ -19,7 +19,7 @@ mkdir -p "$out"
 train() {
   local folder=$1 samples=$2
   shift 2
-  { time "$program" train --data "$data" --out "$folder" --samples "$samples" "$@" > "$folder.log" 2>&1; } 2>&1 |
+  { time "$program" completion --data "$data" --out "$folder" --samples "$samples" "$@" > "$folder.log" 2>&1; } 2>&1 |
     tail -1 | awk '{ print $1 + $2 }'
 }
 

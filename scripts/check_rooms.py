@@ -59,7 +59,7 @@ def rooms_in_order(root):
 def used_rooms(root, room):
     text = re.sub(r'#[^\n]*', '', (root / 'src' / room / 'CMakeLists.txt').read_text())
     call = re.search(r'rhizodont_room\(([^)]*)\)', text).group(1)
-    match = re.search(r'\bUSES\b(.*?)(?:\b(?:SOURCES|LINKS|PRIVATE_LINKS)\b|$)', call, re.S)
+    match = re.search(r'\bUSES\b(.*?)(?:\b(?:SOURCES|LINKS|PRIVATE_LINKS|APART)\b|$)', call, re.S)
     return match.group(1).split() if match else []
 
 

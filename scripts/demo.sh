@@ -2,21 +2,26 @@
 # SPDX-FileCopyrightText: Rhizodont contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Builds the program, completes the crowns in samples/, proves the promises on each result and draws them.
+# Builds the program, completes the crowns in samples/, has each tooth proved by `check` and draws all in one picture.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-scripts/install_dependencies.sh
-cmake -S . -B build -G Ninja -DRHIZODONT_TESTS=OFF
-cmake --build build --target rhizodont
+scripts/install_dependencies.sh program
+mkdir -p build results
+if ! cmake -S . -B build -G Ninja -DRHIZODONT_TESTS=OFF -DRHIZODONT_BENCH=OFF > build/configure.log 2>&1; then
+  cat build/configure.log
+  exit 1
+fi
+echo "Building the program; takes some minutes the first time"
+NINJA_STATUS='[%f of %t, %e s] ' cmake --build build --target rhizodont
 program=build/apps/rhizodont/rhizodont
-mkdir -p results
+teeth=()
 for crown in samples/crown_*; do
   name=$(basename "${crown%.*}")
-  fdi=${name#crown_}
-  echo "== tooth $fdi"
-  "$program" complete "$crown" --fdi "$fdi" -o "results/tooth_$fdi.ply" --report "results/tooth_$fdi.json"
-  "$program" check "$crown" "results/tooth_$fdi.ply"
-  "$program" measure "results/tooth_$fdi.ply"
-  "$program" render "results/tooth_$fdi.ply" -o "results/tooth_$fdi.png" --color-by source
+  tooth=results/tooth_${name#crown_}
+  "$program" complete "$crown" --fdi "${name#crown_}" -o "$tooth.ply" --report "$tooth.json"
+  "$program" check "$crown" "$tooth.ply" > "$tooth.txt" || { cat "$tooth.txt"; exit 4; }
+  "$program" measure "$tooth.ply" >> "$tooth.txt"
+  teeth+=("$tooth.ply")
 done
-echo "Teeth, reports and pictures are in $(pwd)/results"
+"$program" render "${teeth[@]}" -o results/teeth.png --views front,right,oblique --width 320 --height 400
+echo "Teeth, their reports (.json), proofs and figures (.txt) are in $(pwd)/results, drawn together in teeth.png"

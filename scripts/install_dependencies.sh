@@ -2,16 +2,29 @@
 # SPDX-FileCopyrightText: Rhizodont contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Installs what the build and the tests need and this machine lacks, from Debian 12's packages.
+# Installs from Debian 12's packages what this machine lacks of what is needed: for the program alone, or for everything,
+# that is, tests, benchmarks and training too.
+# usage: install_dependencies.sh [program|all]
 set -euo pipefail
 
 packages=(
-  g++ cmake ninja-build clang-format
-  libtorch-dev libgloo-dev libopenblas0-openmp libcgal-dev libeigen3-dev libboost-dev libgmp-dev libmpfr-dev
-  libtbb-dev libnanoflann-dev libcli11-dev nlohmann-json3-dev libfmt-dev libpugixml-dev zlib1g-dev liblz4-dev pkg-config
-  libpng-dev libssl-dev libgtest-dev
-  python3-numpy python3-scipy python3-open3d python3-jsonschema
+  g++ cmake ninja-build
+  libcgal-dev libeigen3-dev libtbb-dev libnanoflann-dev libcli11-dev nlohmann-json3-dev libfmt-dev libpugixml-dev
+  zlib1g-dev liblz4-dev libpng-dev libssl-dev
 )
+case ${1:-all} in
+  program) ;;
+  all)
+    packages+=(
+      clang-format libgtest-dev libtorch-dev libgloo-dev libopenblas0-openmp
+      python3-numpy python3-scipy python3-open3d python3-jsonschema
+    )
+    ;;
+  *)
+    echo "usage: install_dependencies.sh [program|all]" >&2
+    exit 2
+    ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do

@@ -1,17 +1,16 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/number_options.hpp"
+#include "command_line/words.hpp"
 #include "commands.hpp"
 #include "complete_jobs.hpp"
 #include "io/cursors.hpp"
-#include "learning/blas.hpp"
-#include "number_options.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/output_files.hpp"
 #include "rhizodont/report.hpp"
 #include "rhizodont/tooth_file.hpp"
-#include "words.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -262,7 +261,6 @@ class Completion {
 };
 
 void run(const CompleteCommand& command) {
-  if (const std::string warning = blas_warning(); !warning.empty()) fmt::print(stderr, "rhizodont: {}\n", warning);
   const int code = Completion(command).run();
   if (code != 0) exit_with(code);
 }

@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/output_checks.hpp"
 #include "commands.hpp"
 #include "evaluation/calibration.hpp"
 #include "evaluation/evaluate_cases.hpp"
 #include "evaluation/evaluation_plot.hpp"
 #include "evaluation/template_predictor.hpp"
 #include "json_option.hpp"
-#include "learning/blas.hpp"
-#include "learning/safetensors.hpp"
-#include "output_checks.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -31,7 +30,6 @@ struct EvaluateCommand {
 };
 
 NamedPredictor rhizodont_predictor(const EvaluateCommand& command) {
-  if (const std::string warning = blas_warning(); !warning.empty()) fmt::print(stderr, "rhizodont: {}\n", warning);
   const auto models = std::make_shared<const CompletionModels>(
       CompletionModels::load(command.models.empty() ? default_models_folder() : std::filesystem::path(command.models)));
   return {"rhizodont", [models, options = command.options](const TriangleMesh& crown, int fdi) {

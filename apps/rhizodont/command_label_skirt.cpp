@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/output_checks.hpp"
 #include "commands.hpp"
-#include "output_checks.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "training/skirt_sample.hpp"

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/output_checks.hpp"
 #include "commands.hpp"
 #include "json_option.hpp"
-#include "output_checks.hpp"
 #include "report/json.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/measure.hpp"

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/output_checks.hpp"
 #include "commands.hpp"
 #include "mesh/geometry.hpp"
-#include "output_checks.hpp"
 #include "pictures/render.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"

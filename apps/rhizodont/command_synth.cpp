@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/float_bits.hpp"
+#include "command_line/output_checks.hpp"
 #include "commands.hpp"
 #include "families/crown_crop.hpp"
 #include "families/mean_teeth.hpp"
 #include "families/scanner_mesh.hpp"
 #include "families/tooth_family.hpp"
-#include "output_checks.hpp"
 #include "pictures/render.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"

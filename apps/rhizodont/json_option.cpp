@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "json_option.hpp"
 
-#include "output_checks.hpp"
+#include "command_line/output_checks.hpp"
 
 #include <fmt/core.h>
 

@@ -4,7 +4,6 @@
 // How fast teeth and training samples are made, whether they are sound, and how near the families come to real crowns.
 #include "common/stopwatch.hpp"
 #include "crown_fit.hpp"
-#include "families/completion_sample.hpp"
 #include "families/mean_teeth.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/self_intersection.hpp"
@@ -12,6 +11,7 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "teeth/fdi.hpp"
+#include "training/completion_sample.hpp"
 
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>

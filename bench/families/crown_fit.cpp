@@ -4,13 +4,13 @@
 
 #include "completion/mean_crowns.hpp"
 #include "completion/registration.hpp"
-#include "families/completion_sample.hpp"
 #include "families/crown_crop.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
+#include "training/completion_sample.hpp"
 
 #include <Eigen/Dense>
 

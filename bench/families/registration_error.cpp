@@ -4,11 +4,11 @@
 
 #include "common/stopwatch.hpp"
 #include "completion/registration.hpp"
-#include "families/completion_sample.hpp"
 #include "families/crown_crop.hpp"
 #include "families/mean_teeth.hpp"
 #include "teeth/fdi.hpp"
 #include "teeth/prepared_crown.hpp"
+#include "training/completion_sample.hpp"
 
 #include <fmt/core.h>
 #include <tbb/parallel_for.h>

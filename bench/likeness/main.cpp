@@ -1,12 +1,11 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// Trains the network by which crowns are judged, and says how often the judgement is wrong.
+// How often the judgement of crowns is wrong.
 #include "completion/likeness.hpp"
 #include "families/tooth_family.hpp"
 #include "families/unlike_crowns.hpp"
 #include "intake/take_crown.hpp"
-#include "learning/train_classifier.hpp"
 #include "pipeline/crown_likeness.hpp"
 #include "pipeline/models.hpp"
 #include "rhizodont/error.hpp"
@@ -17,7 +16,6 @@
 #include "training/likeness_samples.hpp"
 
 #include <fmt/core.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -34,86 +32,11 @@ const std::filesystem::path models = std::filesystem::path(RHIZODONT_SOURCE_DIR)
 
 constexpr const char* crown_models_folder = "crowns/ssm";
 
-/// Seeds of crowns that bounds come from, and of those in the table: neither had a part in the training.
-constexpr std::uint64_t bounds_seed = std::uint64_t{1} << 40, table_seed = std::uint64_t{1} << 41;
+/// Seed of crowns in the table: they had a part neither in the training nor in finding the bounds.
+constexpr std::uint64_t table_seed = std::uint64_t{1} << 41;
 
 TriangleMesh generated_crown(const ToothFamilies& families, int type, std::uint64_t seed, RandomStream& random) {
   return draw_scanned_crown(generate_tooth(families, type, seed), random);
-}
-
-LabelledPanoramas training_panoramas(const ToothFamilies& families, const std::vector<ModelCrown>& crown_models,
-                                     int per_type) {
-  std::vector<std::vector<LikenessSample>> of_tooth(static_cast<std::size_t>(per_type) * tooth_type_count);
-  tbb::parallel_for(std::size_t{0}, of_tooth.size(), [&](std::size_t i) {
-    try {
-      of_tooth[i] =
-          make_likeness_samples(families, crown_models, static_cast<int>(i % tooth_type_count), i / tooth_type_count);
-    } catch (const NoResultError&) {  // no draw of this seed made a tooth
-    }
-  });
-  LabelledPanoramas all{CrownPanorama::channels, CrownPanorama::rows, CrownPanorama::columns, {}, {}};
-  for (const std::vector<LikenessSample>& samples : of_tooth)
-    for (const LikenessSample& sample : samples) {
-      all.values.insert(all.values.end(), sample.panorama.values.begin(), sample.panorama.values.end());
-      all.labels.push_back(static_cast<std::int32_t>(sample.label));
-    }
-  return all;
-}
-
-/// Bounds by held-out crowns, of which every third is low, and by what is no crown.
-LikenessBounds bounds_of(const ToothFamilies& families, const ToothClassifier& classifier, int per_type) {
-  std::vector<Likeness> crowns, strangers;
-  std::vector<std::size_t> teeth;
-  for (int i = 0; i < per_type; ++i)
-    for (int type = 0; type < tooth_type_count; ++type) {
-      const std::uint64_t seed = bounds_seed + static_cast<std::uint64_t>(i);
-      RandomStream random(seed, 700 + static_cast<std::uint64_t>(type));
-      try {
-        const SyntheticTooth tooth = generate_tooth(families, type, seed);
-        const TriangleMesh crown = i % 3 == 0 ? draw_low_crown(tooth, random) : draw_scanned_crown(tooth, random);
-        crowns.push_back(likeness(crown, growth_axis(crown), classifier));
-        teeth.push_back(2 * static_cast<std::size_t>(type));
-        const auto kind = static_cast<UnlikeKind>((i + type) % unlike_kind_count);
-        const TriangleMesh stranger = unlike_crown(draw_scanned_crown(tooth, random), kind, random);
-        strangers.push_back(likeness(stranger, growth_axis(stranger), classifier));
-      } catch (const Error&) {  // a cut that leaves nothing
-      }
-    }
-  return likeness_bounds(crowns, teeth, strangers);
-}
-
-/// Sets the bounds of a file of weights anew.
-void set_bounds(const std::filesystem::path& data, const std::filesystem::path& file, int per_type) {
-  TensorFile weights = read_safetensors(file);
-  const LikenessBounds bounds = bounds_of(load_tooth_families(data), ToothClassifier(weights), per_type);
-  note_bounds(bounds, weights);
-  write_safetensors(file, weights);
-  fmt::print("{}: bounds {:.2f}, {:.2f}, {:.2f}\n", file.string(), bounds.other_tooth, bounds.unlike, bounds.refused);
-}
-
-void fit(const std::filesystem::path& data, const std::filesystem::path& file, int per_type, int steps) {
-  const ToothFamilies families = load_tooth_families(data);
-  const std::vector<ModelCrown> crown_models = load_model_crowns(data / crown_models_folder);
-  const LabelledPanoramas panoramas = training_panoramas(families, crown_models, per_type);
-  fmt::print("{} panoramas\n", panoramas.labels.size());
-  ClassifierTrainingOptions options;
-  options.steps = steps;
-  options.progress = [&](const TrainingProgress& progress) {
-    fmt::print("step {} of {}, loss {:.4f}, {:.0f} panoramas/s\n", progress.steps, options.steps, progress.loss,
-               progress.samples_per_second);
-    std::fflush(stdout);
-  };
-  TensorFile weights = train_classifier(panoramas, options);
-  const LikenessBounds bounds = bounds_of(families, ToothClassifier(weights), std::max(60, per_type / 4));
-  note_bounds(bounds, weights);
-  weights.metadata["content"] = "A network that tells which tooth a crown is (src/completion/tooth_classifier.hpp)";
-  weights.metadata["training.panoramas"] = std::to_string(panoramas.labels.size());
-  weights.metadata["training.steps"] = std::to_string(steps);
-  weights.metadata["attribution"] =
-      "derived from \"Permanent Teeth\", University of Dundee School of Dentistry (E. McDougall, A. Mason, M. "
-      "Roughley), CC BY 4.0, and crown models of Chen Y. et al., 2023 (MIT)";
-  write_safetensors(file, weights);
-  fmt::print("{}: bounds {:.2f}, {:.2f}, {:.2f}\n", file.string(), bounds.other_tooth, bounds.unlike, bounds.refused);
 }
 
 constexpr const char* tally_head =
@@ -255,23 +178,15 @@ void judge_files(const std::vector<std::filesystem::path>& files) {
 
 int main(int argc, char** argv) {
   const std::string task = argc > 1 ? argv[1] : "";
-  const auto number = [&](int at, int otherwise) { return argc > at ? std::atoi(argv[at]) : otherwise; };
-  if (argc < 3 || (task != "fit" && task != "bounds" && task != "table" && task != "judge") ||
-      ((task == "fit" || task == "bounds") && argc < 4)) {
+  if (argc < 3 || (task != "table" && task != "judge")) {
     fmt::print(stderr,
-               "usage: bench_likeness fit DATA FILE [TEETH_PER_TYPE=500] [STEPS=4000]\n"
-               "       bench_likeness bounds DATA FILE [TEETH_PER_TYPE=150]\n"
-               "       bench_likeness table DATA [CROWNS_PER_TYPE=32]\n"
+               "usage: bench_likeness table DATA [CROWNS_PER_TYPE=32]\n"
                "       bench_likeness judge CROWN_FDI.ply...\n");
     return 2;
   }
   try {
-    if (task == "fit")
-      rhizodont::fit(argv[2], argv[3], number(4, 500), number(5, 4000));
-    else if (task == "bounds")
-      rhizodont::set_bounds(argv[2], argv[3], number(4, 150));
-    else if (task == "table")
-      rhizodont::table(argv[2], number(3, 32));
+    if (task == "table")
+      rhizodont::table(argv[2], argc > 3 ? std::atoi(argv[3]) : 32);
     else
       rhizodont::judge_files({argv + 2, argv + argc});
     return 0;

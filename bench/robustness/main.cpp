@@ -7,11 +7,11 @@
 
 #include "evaluation/root_figures.hpp"
 #include "evaluation/template_predictor.hpp"
-#include "families/completion_sample.hpp"
 #include "families/scanner_mesh.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
+#include "training/completion_sample.hpp"
 
 #include <fmt/format.h>
 

@@ -8,9 +8,9 @@
 // usage: bench_unseen DATA_FOLDER [TEETH_PER_TYPE=10]
 
 #include "evaluation/root_figures.hpp"
-#include "families/completion_sample.hpp"
 #include "families/tooth_family.hpp"
 #include "teeth/fdi.hpp"
+#include "training/completion_sample.hpp"
 
 #include <fmt/format.h>
 

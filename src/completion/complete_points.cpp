@@ -5,8 +5,8 @@
 // 3.3, with the network in millimetres of the crown's own frame.
 #include "completion/complete_points.hpp"
 
-#include "learning/completion_shape.hpp"
 #include "mesh/sampling.hpp"
+#include "networks/completion_shape.hpp"
 #include "teeth/fdi.hpp"
 
 namespace rhizodont {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "completion/registration.hpp"
-#include "learning/completion_network.hpp"
+#include "networks/completion_network.hpp"
 #include "rhizodont/mesh.hpp"
 
 namespace rhizodont {

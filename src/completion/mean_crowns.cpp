@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "completion/mean_crowns.hpp"
-#include "learning/safetensors.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "completion/crown_panorama.hpp"
-#include "learning/safetensors.hpp"
+#include "networks/safetensors.hpp"
 #include "teeth/fdi.hpp"
 
 #include <Eigen/Core>

@@ -6,8 +6,11 @@
 #include "families/crown_crop.hpp"
 
 #include "base/disjoint_sets.hpp"
+#include "mesh/geometry.hpp"
 #include "mesh/principal_axis.hpp"
 #include "rhizodont/error.hpp"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -251,6 +254,15 @@ void add_skirt_remains(TriangleMesh& crown, double width_mm, RandomStream& rando
     if (a != from) crown.triangles.push_back({to, from, a});
     if (b != to) crown.triangles.push_back({to, a, b});
   }
+}
+
+CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn) {
+  CanonicalFrame frame;
+  const Eigen::Quaterniond upright =
+      Eigen::Quaterniond::FromTwoVectors(growth_axis(crown), Eigen::Vector3d::UnitZ().eval());
+  frame.rotation = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix() * upright.toRotationMatrix();
+  frame.centre = area_centroid(crown);
+  return frame;
 }
 
 }  // namespace rhizodont

@@ -4,6 +4,7 @@
 
 #include "base/random_stream.hpp"
 #include "families/tooth_family.hpp"
+#include "teeth/frame.hpp"
 
 #include <array>
 #include <optional>
@@ -49,5 +50,9 @@ CroppedCrown draw_cropped_crown(const SyntheticTooth& tooth, double paper_share,
 /// Adds what a careless cut leaves of the gum: one to three flaps along the border, up to `width_mm` wide, that turn
 /// outwards or hang down. The crown's own triangles stay first and unchanged. @param crown a disc
 void add_skirt_remains(TriangleMesh& crown, double width_mm, RandomStream& random);
+
+/// Axis and centre from an open crown in the generator's own frame; about the axis that frame, turned by `turn`
+/// radians.
+CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn);
 
 }  // namespace rhizodont

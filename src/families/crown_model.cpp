@@ -8,11 +8,11 @@
 #include "families/crown_model.hpp"
 
 #include "families/tooth_family.hpp"
-#include "learning/safetensors.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/sampling.hpp"
 #include "mesh/smooth_functions.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 
 #include <Eigen/Dense>

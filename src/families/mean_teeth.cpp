@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "families/mean_teeth.hpp"
 
-#include "families/completion_sample.hpp"
 #include "families/crown_crop.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "completion/mean_crowns.hpp"
-#include "learning/surface_network.hpp"
+#include "networks/surface_network.hpp"
 #include "rhizodont/complete.hpp"
 #include "skirt/skirt.hpp"
 

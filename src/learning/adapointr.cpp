@@ -11,7 +11,7 @@
 
 #include <numeric>
 
-#include "learning/neighbours.hpp"
+#include "networks/neighbours.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

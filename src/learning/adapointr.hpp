@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "learning/completion_shape.hpp"
 #include "learning/layers.hpp"
+#include "networks/completion_shape.hpp"
 
 namespace rhizodont {
 

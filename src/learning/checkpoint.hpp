@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "learning/optimiser.hpp"
-#include "learning/safetensors.hpp"
+#include "networks/safetensors.hpp"
 
 namespace rhizodont {
 

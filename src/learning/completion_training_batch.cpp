@@ -10,7 +10,7 @@
 #include <random>
 #include <span>
 
-#include "learning/neighbours.hpp"
+#include "networks/neighbours.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

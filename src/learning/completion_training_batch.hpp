@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "learning/adapointr.hpp"
-#include "learning/completion_training_sample.hpp"
 #include "learning/losses.hpp"
+#include "training/completion_training_sample.hpp"
 
 namespace rhizodont {
 

@@ -5,12 +5,7 @@
 // Transactions on Graphics 41(3), 2022. Times start spread over all scales instead of at zero: fewer steps are lost.
 #include "learning/diffusion_net.hpp"
 
-#include <array>
-#include <charconv>
 #include <cmath>
-#include <utility>
-
-#include "rhizodont/error.hpp"
 
 namespace rhizodont {
 namespace {
@@ -86,38 +81,7 @@ torch::Tensor copied(const std::vector<std::int32_t>& values) {
       .clone();
 }
 
-const std::string format_name = "rhizodont surface 1";
-
-constexpr std::array<std::pair<const char*, int SurfaceShape::*>, 3> sizes{{
-    {"width", &SurfaceShape::width},
-    {"blocks", &SurfaceShape::blocks},
-    {"eigenvectors", &SurfaceShape::eigenvectors},
-}};
-constexpr std::array<std::pair<const char*, bool SurfaceShape::*>, 3> inputs{{
-    {"position", &SurfaceShape::position},
-    {"signature", &SurfaceShape::signature},
-    {"surroundings", &SurfaceShape::surroundings},
-}};
-
 }  // namespace
-
-void check_surface_sample(const SurfaceSample& s, bool labelled) {
-  const auto n = static_cast<std::size_t>(std::max(s.vertices, 0)),
-             k = static_cast<std::size_t>(std::max(s.eigenvectors, 0));
-  const std::size_t entries = s.neighbours.size();
-  bool good = n > 0 && k > 0 && s.features.size() == n * surface_feature_count && s.mass.size() == n &&
-              s.eigenvalues.size() == k && s.basis.size() == n * k && s.first.size() == n + 1 &&
-              s.gradient_x.size() == entries && s.gradient_y.size() == entries &&
-              (labelled ? s.labels.size() == n : true);
-  if (!good) throw InputError("The arrays of a surface do not fit each other.");
-  good =
-      s.first.front() == 0 && s.first.back() == static_cast<std::int32_t>(entries) &&
-      std::is_sorted(s.first.begin(), s.first.end()) &&
-      std::all_of(s.neighbours.begin(), s.neighbours.end(), [&](std::int32_t v) { return v >= 0 && v < s.vertices; });
-  for (const auto* values : {&s.features, &s.mass, &s.eigenvalues, &s.basis, &s.gradient_x, &s.gradient_y})
-    good = good && std::all_of(values->begin(), values->end(), [](float x) { return std::isfinite(x); });
-  if (!good) throw InputError("A surface has features or operators that are not finite or out of range.");
-}
 
 SurfaceTensors to_tensors(const SurfaceSample& s, bool labelled) {
   check_surface_sample(s, labelled);
@@ -196,47 +160,6 @@ torch::Tensor DiffusionNetImpl::forward(const SurfaceTensors& surface) {
   torch::Tensor x = first->forward(surface.features.index_select(1, columns_), Precision::single);
   for (DiffusionBlock& block : blocks) x = block->forward(surface, x);
   return last->forward(x, Precision::single).squeeze(1);
-}
-
-void note_surface_shape(const SurfaceShape& shape, std::map<std::string, std::string>& metadata) {
-  metadata["format"] = format_name;
-  for (const auto& [name, member] : sizes) metadata["shape." + std::string(name)] = std::to_string(shape.*member);
-  for (const auto& [name, member] : inputs) metadata["input." + std::string(name)] = shape.*member ? "yes" : "no";
-}
-
-SurfaceShape read_surface_shape(const std::map<std::string, std::string>& metadata) {
-  const auto text_of = [&](const std::string& key) {
-    const auto found = metadata.find(key);
-    return found == metadata.end() ? std::string() : found->second;
-  };
-  if (text_of("format") != format_name) throw InputError("This file does not hold weights of a surface network.");
-  SurfaceShape shape;
-  for (const auto& [name, member] : sizes) {
-    const std::string text = text_of("shape." + std::string(name));
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), shape.*member);
-    if (text.empty() || failure != std::errc() || end != text.data() + text.size())
-      throw InputError("The weight file does not say how large the network is (" + std::string(name) + ").");
-  }
-  for (const auto& [name, member] : inputs) {
-    const std::string text = text_of("input." + std::string(name));
-    if (text != "yes" && text != "no") throw InputError("The weight file does not say what the network looks at.");
-    shape.*member = text == "yes";
-  }
-  try {
-    check_surface_shape(shape);
-  } catch (const UsageError& error) {
-    throw InputError(error.what());
-  }
-  return shape;
-}
-
-void check_surface_shape(const SurfaceShape& shape) {
-  for (const auto& [name, member] : sizes)
-    if (shape.*member < 1 || shape.*member > 1024)
-      throw UsageError("The surface network's size " + std::string(name) + " is out of range.");
-  if (shape.blocks > 64) throw UsageError("The surface network has too many blocks.");
-  if (!shape.position && !shape.signature && !shape.surroundings)
-    throw UsageError("A surface network must look at something.");
 }
 
 }  // namespace rhizodont

@@ -4,13 +4,11 @@
 
 // Private to this room: brings in torch.
 
-#include <map>
-#include <string>
 #include <vector>
 
 #include "learning/layers.hpp"
-#include "learning/surface_network.hpp"
-#include "learning/surface_sample.hpp"
+#include "networks/surface_sample.hpp"
+#include "networks/surface_shape.hpp"
 
 namespace rhizodont {
 
@@ -61,12 +59,5 @@ struct DiffusionNetImpl : torch::nn::Module {
   std::vector<DiffusionBlock> blocks;
 };
 TORCH_MODULE(DiffusionNet);
-
-/// Sizes in a file's metadata.
-void note_surface_shape(const SurfaceShape& shape, std::map<std::string, std::string>& metadata);
-/// Throws InputError if they are missing or out of range.
-SurfaceShape read_surface_shape(const std::map<std::string, std::string>& metadata);
-/// Throws UsageError if a size is out of range.
-void check_surface_shape(const SurfaceShape& shape);
 
 }  // namespace rhizodont

@@ -7,7 +7,7 @@
 
 #include <ATen/Parallel.h>
 
-#include "learning/neighbours.hpp"
+#include "networks/neighbours.hpp"
 
 namespace rhizodont {
 namespace {

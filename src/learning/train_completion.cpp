@@ -16,6 +16,7 @@
 #include "learning/threads.hpp"
 #include "learning/training_loop.hpp"
 #include "learning/weights.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

@@ -7,10 +7,11 @@
 #include <map>
 #include <string>
 
-#include "learning/completion_shape.hpp"
-#include "learning/completion_training_sample.hpp"
-#include "learning/safetensors.hpp"
 #include "learning/training_options.hpp"
+#include "networks/completion_shape.hpp"
+#include "networks/safetensors.hpp"
+#include "training/completion_training_sample.hpp"
+#include "training/sample_numbers.hpp"
 
 namespace rhizodont {
 

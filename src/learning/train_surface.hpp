@@ -7,10 +7,11 @@
 #include <map>
 #include <string>
 
-#include "learning/safetensors.hpp"
-#include "learning/surface_network.hpp"
-#include "learning/surface_sample.hpp"
 #include "learning/training_options.hpp"
+#include "networks/safetensors.hpp"
+#include "networks/surface_network.hpp"
+#include "networks/surface_sample.hpp"
+#include "training/sample_numbers.hpp"
 
 namespace rhizodont {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "learning/process_group.hpp"
-#include "learning/safetensors.hpp"
 #include "learning/training_options.hpp"
+#include "networks/safetensors.hpp"
 
 namespace rhizodont {
 

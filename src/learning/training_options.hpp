@@ -10,9 +10,6 @@
 
 namespace rhizodont {
 
-/// Samples with numbers from here on belong to validation and are never trained on.
-inline constexpr std::uint64_t first_validation_sample = std::uint64_t{1} << 40;
-
 /// Which of several processes this one is.
 struct ProcessOptions {
   int count = 1;  ///< >= 1: processes that train one network together; a step takes `batch` samples of each

@@ -4,8 +4,8 @@
 
 #include "completion/likeness.hpp"
 #include "completion/mean_crowns.hpp"
-#include "learning/completion_network.hpp"
-#include "learning/surface_network.hpp"
+#include "networks/completion_network.hpp"
+#include "networks/surface_network.hpp"
 #include "rhizodont/complete.hpp"
 
 #include <memory>

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "rhizodont/report.hpp"
+#include "rhizodont/version.hpp"
 
 #include "pipeline/report_parts.hpp"
 #include "report/json.hpp"

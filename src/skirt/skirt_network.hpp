@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "learning/surface_network.hpp"
+#include "networks/surface_network.hpp"
 #include "rhizodont/mesh.hpp"
 
 #include <vector>

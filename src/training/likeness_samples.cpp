@@ -7,6 +7,9 @@
 #include "families/unlike_crowns.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/frame.hpp"
+#include "training/sample_numbers.hpp"
+
+#include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
 
@@ -77,11 +80,19 @@ TriangleMesh draw_low_crown(const SyntheticTooth& tooth, RandomStream& random) {
 std::optional<SyntheticTooth> draw_model_crown_of_type(const std::vector<ModelCrown>& models, int type,
                                                        RandomStream& random) {
   constexpr double factor = 1.2;  // of the models' own deviations: what 95 people vary less than all
+  constexpr int teeth_of_jaw = tooth_type_count / 2;
+  constexpr double third_molar_size = 0.95, third_molar_deviation = 0.05;
+  // No model has third molars; their crowns are second molars' made smaller, and less alike.
+  const bool third_molar = type % teeth_of_jaw == teeth_of_jaw - 1;
   std::vector<const ModelCrown*> fitting;
   for (const ModelCrown& model : models)
-    if (model.mean.type == type) fitting.push_back(&model);
+    if (model.mean.type == (third_molar ? type - 1 : type)) fitting.push_back(&model);
   if (fitting.empty()) return std::nullopt;
-  return draw_model_crown(*fitting[random.index(fitting.size())], factor, random);
+  const ModelCrown& model = *fitting[random.index(fitting.size())];
+  const double size = third_molar ? third_molar_size + random.normal(0.0, third_molar_deviation) : 1;
+  SyntheticTooth crown = draw_model_crown(model, {.deviation = factor, .size = size}, random);
+  crown.type = type;
+  return crown;
 }
 
 std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families, const std::vector<ModelCrown>& models,
@@ -109,6 +120,47 @@ std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families,
   add_crowns_of(generate_tooth(families, type, seed), 2);
   if (const auto crown = draw_model_crown_of_type(models, type, random)) add_crowns_of(*crown, 1);
   return samples;
+}
+
+LabelledPanoramas make_likeness_panoramas(const ToothFamilies& families, const std::vector<ModelCrown>& models,
+                                          int per_type) {
+  std::vector<std::vector<LikenessSample>> of_tooth(static_cast<std::size_t>(per_type) * tooth_type_count);
+  tbb::parallel_for(std::size_t{0}, of_tooth.size(), [&](std::size_t i) {
+    try {
+      of_tooth[i] =
+          make_likeness_samples(families, models, static_cast<int>(i % tooth_type_count), i / tooth_type_count);
+    } catch (const NoResultError&) {  // no draw of this seed made a tooth
+    }
+  });
+  LabelledPanoramas all{CrownPanorama::channels, CrownPanorama::rows, CrownPanorama::columns, {}, {}};
+  for (const std::vector<LikenessSample>& samples : of_tooth)
+    for (const LikenessSample& sample : samples) {
+      all.values.insert(all.values.end(), sample.panorama.values.begin(), sample.panorama.values.end());
+      all.labels.push_back(static_cast<std::int32_t>(sample.label));
+    }
+  return all;
+}
+
+LikenessBounds draw_likeness_bounds(const ToothFamilies& families, const ToothClassifier& classifier, int per_type) {
+  constexpr std::uint64_t bounds_seed = first_validation_sample;
+  std::vector<Likeness> crowns, strangers;
+  std::vector<std::size_t> teeth;
+  for (int i = 0; i < per_type; ++i)
+    for (int type = 0; type < tooth_type_count; ++type) {
+      const std::uint64_t seed = bounds_seed + static_cast<std::uint64_t>(i);
+      RandomStream random(seed, 700 + static_cast<std::uint64_t>(type));
+      try {
+        const SyntheticTooth tooth = generate_tooth(families, type, seed);
+        const TriangleMesh crown = i % 3 == 0 ? draw_low_crown(tooth, random) : draw_scanned_crown(tooth, random);
+        crowns.push_back(likeness(crown, growth_axis(crown), classifier));
+        teeth.push_back(2 * static_cast<std::size_t>(type));
+        const auto kind = static_cast<UnlikeKind>((i + type) % unlike_kind_count);
+        const TriangleMesh stranger = unlike_crown(draw_scanned_crown(tooth, random), kind, random);
+        strangers.push_back(likeness(stranger, growth_axis(stranger), classifier));
+      } catch (const Error&) {  // a cut that leaves nothing
+      }
+    }
+  return likeness_bounds(crowns, teeth, strangers);
 }
 
 }  // namespace rhizodont

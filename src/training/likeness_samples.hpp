@@ -4,9 +4,11 @@
 
 #include "base/random_stream.hpp"
 #include "completion/crown_panorama.hpp"
+#include "completion/likeness.hpp"
 #include "families/model_crowns.hpp"
 #include "families/tooth_family.hpp"
 #include "rhizodont/mesh.hpp"
+#include "training/labelled_panoramas.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -23,7 +25,8 @@ TriangleMesh draw_scanned_crown(const SyntheticTooth& tooth, RandomStream& rando
 /// gum lines left no disc.
 TriangleMesh draw_low_crown(const SyntheticTooth& tooth, RandomStream& random);
 
-/// A crown of a left type (0..15) drawn from its statistical models, left or right; nothing where there are none.
+/// A crown of a left type (0..15) drawn from its statistical models, left or right; a third molar, which no model has,
+/// from the second molar's made smaller. Nothing where there are none.
 std::optional<SyntheticTooth> draw_model_crown_of_type(const std::vector<ModelCrown>& models, int type,
                                                        RandomStream& random);
 
@@ -39,5 +42,13 @@ struct LikenessSample {
 /// on type and seed alone. Throws as generate_tooth.
 std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families, const std::vector<ModelCrown>& models,
                                                   int type, std::uint64_t seed);
+
+/// What the network learns from: `make_likeness_samples` of the first `per_type` teeth of every type, >= 1.
+LabelledPanoramas make_likeness_panoramas(const ToothFamilies& families, const std::vector<ModelCrown>& models,
+                                          int per_type);
+
+/// Bounds by `per_type` crowns of each type that had no part in the training, every third of them low, and by as many
+/// things that are no crown. Throws as likeness_bounds.
+LikenessBounds draw_likeness_bounds(const ToothFamilies& families, const ToothClassifier& classifier, int per_type);
 
 }  // namespace rhizodont

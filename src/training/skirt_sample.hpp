@@ -3,7 +3,7 @@
 #pragma once
 
 #include "families/tooth_family.hpp"
-#include "learning/surface_sample.hpp"
+#include "networks/surface_sample.hpp"
 #include "rhizodont/mesh.hpp"
 
 #include <cstdint>

@@ -38,7 +38,7 @@ TEST_F(CommandLine, WhatWasMeantIsSuggested) {
   expect_error("complet crown_34.ply", 2, "no command 'complet': did you mean complete?");
   expect_error("comp", 2, "did you mean complete?");
   expect_error("rendre tooth.ply", 2, "did you mean render?");
-  expect_error("train_skirt", 2, "did you mean train-skirt?");
+  expect_error("label_skirt", 2, "did you mean label-skirt?");
   expect_error("crown_34.ply -o tooth.ply", 2, "did you mean complete crown_34.ply?");
   expect_error("xyzzy", 2, "there are complete, evaluate, check");
   expect_error(complete("crown_34.ply --rapair -o tooth.ply"), 2, "no option --rapair: did you mean --repair?");

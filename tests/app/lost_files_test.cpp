@@ -180,9 +180,6 @@ TEST_F(LostFiles, NamesThatTheUserDidNotGiveReplaceNothing) {
   expect_nothing_lost("complete crown.stl --fdi 36 --candidates 2 --overwrite -o new.ply --report report.json", 2);
   folder.write("tooth_36_7.ply", "mine");
   expect_nothing_lost("synth --data cases --type 36 --seed 7 -o .", 2);
-  folder.write("weights.md", "my notes");
-  expect_nothing_lost("train --out run --export weights.safetensors", 2);
-  expect_nothing_lost("train-skirt --out run --export weights.safetensors", 2);
   const Outcome said = run("complete crown.stl --fdi 36 --e 2 --candidates 2 --overwrite -o neighbour.ply");
   EXPECT_EQ(said.code, 0) << said.error;
   EXPECT_NE(test::read_all(at("neighbour_2.ply")), "a neighbour");

@@ -40,7 +40,7 @@ class Program : public ::testing::Test {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.code, code) << arguments << "\n" << outcome.error;
     EXPECT_NE(outcome.error.find(words), std::string::npos) << outcome.error << "\nshould hold: " << words;
-    EXPECT_EQ(outcome.error.rfind("rhizodont: ", 0), 0U) << outcome.error;
+    EXPECT_EQ(outcome.error.rfind(fs::path(RHIZODONT_PROGRAM).filename().string() + ": ", 0), 0U) << outcome.error;
     EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
   }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "teeth/frame.hpp"
 #include "completion/mean_crowns.hpp"
-#include "learning/safetensors.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
 

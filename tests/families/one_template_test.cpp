@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // The families on the one template that is kept beside this file, so that they are tested wherever the project is.
+#include "families/one_template.hpp"
 #include "base/random_stream.hpp"
 #include "common/temporary_folder.hpp"
-#include "families/completion_sample.hpp"
 #include "families/crown_crop.hpp"
 #include "families/tooth_family.hpp"
 #include "mesh/diagnosis.hpp"
@@ -25,66 +25,8 @@
 namespace rhizodont {
 namespace {
 
-namespace fs = std::filesystem;
-
-constexpr int molar = 13;  // the type of tooth 36
-
-MeshFile own_template() { return load_mesh(fs::path(RHIZODONT_SOURCE_DIR) / "tests/families/data/tooth_36.ply"); }
-
-// Mean dimensions, all different so that a mistaken column shows.
-constexpr double crown_height = 7.5, root_length = 14, mesiodistal = 11, buccolingual = 10.5;
-
-/// A folder as `load_tooth_families` reads it: the template at all sixteen places of two arches, upper ones turned
-/// over.
-class OneTemplate : public ::testing::Test {
- protected:
-  test::TemporaryFolder folder;
-
-  void SetUp() override {
-    fs::create_directory(folder.path() / "templates");
-    for (int type = 0; type < tooth_type_count; ++type) write_template(type, own_template());
-    write_dimensions(tooth_type_count);
-  }
-
-  void write_template(int type, MeshFile file) const {
-    const double along = (type % 8 + 0.5) / 8 * std::numbers::pi / 2;  // from the front tooth to the last molar
-    const Eigen::Vector3d out(std::sin(along), 0, std::cos(along));
-    const Eigen::Vector3d up(0, type < 8 ? -1 : 1, 0);
-    Eigen::Matrix3d axes;  // the template's own have +z to the crown and +y to the cheek
-    axes << out.cross(up), out, up;
-    for (Point& p : file.mesh.vertices)
-      p = axes * p + Point(30 * out.x(), 0, 45 * out.z()) + (type < 8 ? 12 : -12) * up;
-    save_mesh(path_of(type), file);
-  }
-
-  fs::path path_of(int type) const {
-    return folder.path() / "templates" / ("tooth_" + std::to_string(fdi_of_type(type, false)) + ".ply");
-  }
-
-  void write_dimensions(int rows) const {
-    std::ofstream table(folder.path() / "anatomy.csv");
-    table << "tooth,fdi,overall_mm,crown_mm,root_mm,md_crown_mm,md_cervix_mm,bl_crown_mm,bl_cervix_mm\n";
-    for (int type = 0; type < rows; ++type)
-      table << "a tooth," << fdi_of_type(type, true) << '/' << fdi_of_type(type, false) << ",21.5," << crown_height
-            << ",mesial 13 distal " << root_length << ',' << mesiodistal << ",9," << buccolingual << ",9\n";
-  }
-
-  ToothFamilies load() const {
-    FamilyLoadOptions options;
-    options.types = {molar};
-    options.vertices = 1200;
-    return load_tooth_families(folder.path(), options);
-  }
-
-  std::string refusal() const {
-    try {
-      load();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "nothing was refused";
-  }
-};
+using test::crown_height, test::root_length, test::mesiodistal, test::buccolingual;
+using test::molar, test::own_template, test::OneTemplate;
 
 TEST_F(OneTemplate, IsFoundToHaveTwoRootsAndAnUprightAxis) {
   const ToothFamilies families = load();
@@ -148,20 +90,6 @@ TEST_F(OneTemplate, GrowsSoundTeethThatDifferAndRepeat) {
   }
 }
 
-TEST_F(OneTemplate, MakesSamplesToTrainWith) {
-  CompletionSampleOptions options;
-  options.type = molar;
-  const ToothFamilies families = load();
-  const CompletionSample sample = make_completion_sample(families, 5, options);
-  EXPECT_EQ(sample.pair.input.size(), 1024U);
-  EXPECT_EQ(sample.pair.target.size(), 4096U);
-  EXPECT_EQ(sample.pair.type, molar);
-  EXPECT_TRUE(std::all_of(sample.pair.target.begin(), sample.pair.target.end(),
-                          [](const Eigen::Vector3f& p) { return p.allFinite(); }));
-  EXPECT_EQ(make_completion_sample(families, 5, options).pair.target, sample.pair.target);
-  EXPECT_NE(make_completion_sample(families, 6, options).pair.target, sample.pair.target);
-}
-
 TEST_F(OneTemplate, WhatWasNotLoadedOrIsNoTypeIsRefused) {
   const ToothFamilies families = load();
   EXPECT_THROW(generate_tooth(families, 12, 1), UsageError);
@@ -177,7 +105,7 @@ TEST_F(OneTemplate, DamagedFoldersAreRefusedWithTheReason) {
   open.mesh.triangles.resize(open.mesh.triangles.size() / 2);
   write_template(molar, open);
   EXPECT_NE(refusal(), "nothing was refused");
-  fs::remove(path_of(molar));
+  std::filesystem::remove(path_of(molar));
   EXPECT_NE(refusal().find("tooth_36.ply"), std::string::npos) << refusal();
 }
 

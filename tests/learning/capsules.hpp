@@ -7,8 +7,8 @@
 #include <numbers>
 #include <random>
 
-#include "learning/completion_training_sample.hpp"
 #include "learning/train_completion.hpp"
+#include "training/completion_training_sample.hpp"
 
 namespace rhizodont::testing {
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "learning/surface_sample.hpp"
+#include "networks/surface_sample.hpp"
 #include "operators/eigenbasis.hpp"
 #include "operators/surfaces.hpp"
 

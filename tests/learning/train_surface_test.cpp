@@ -6,10 +6,10 @@
 #include <fstream>
 
 #include "common/temporary_folder.hpp"
-#include "learning/safetensors.hpp"
-#include "learning/surface_network.hpp"
 #include "learning/surfaces.hpp"
 #include "learning/train_surface.hpp"
+#include "networks/safetensors.hpp"
+#include "networks/surface_network.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

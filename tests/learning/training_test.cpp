@@ -11,9 +11,9 @@
 
 #include "common/temporary_folder.hpp"
 #include "learning/capsules.hpp"
-#include "learning/completion_network.hpp"
-#include "learning/safetensors.hpp"
 #include "learning/train_completion.hpp"
+#include "networks/completion_network.hpp"
+#include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {

@@ -4,18 +4,16 @@
 // Every option that a caller can set, once out of its range on either side where it has two: refused by name before
 // anything else is looked at.
 
+#include "common/option_faults.hpp"
 #include "completion/registration.hpp"
 #include "evaluation/root_figures.hpp"
 #include "evaluation/template_predictor.hpp"
-#include "families/completion_sample.hpp"
 #include "families/tooth_family.hpp"
 #include "fusion/fuse.hpp"
 #include "guiding/crown_fit.hpp"
 #include "guiding/guiding_cloud.hpp"
 #include "guiding/guiding_surface.hpp"
 #include "isosurface/iterative_poisson.hpp"
-#include "learning/train_completion.hpp"
-#include "learning/train_surface.hpp"
 #include "mesh/pieces.hpp"
 #include "mesh/repair.hpp"
 #include "mesh/test_meshes.hpp"
@@ -32,14 +30,13 @@
 #include "skirt/skirt_network.hpp"
 #include "skirt/spikes.hpp"
 #include "teeth/prepared_crown.hpp"
+#include "training/completion_sample.hpp"
 #include "training/skirt_sample.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <concepts>
 #include <functional>
-#include <initializer_list>
 #include <limits>
 #include <string>
 #include <vector>
@@ -47,60 +44,14 @@
 namespace rhizodont {
 namespace {
 
-/// A call with one option out of its range.
-struct Fault {
-  std::string option;
-  std::function<void()> call;
-};
-
-/// Collects the faults of one options struct.
-template <class Options>
-class Faults {
- public:
-  using Use = std::function<void(const Options&)>;
-  Faults(std::vector<Fault>& all, Use use) : all_(all), use_(std::move(use)) {}
-
-  /// Values out of range; of a floating-point option also what is not a number.
-  template <class Value>
-  Faults& of(const std::string& name, Value Options::*option, std::initializer_list<Value> values) {
-    std::vector<Value> bad(values);
-    if constexpr (std::floating_point<Value>) bad.push_back(std::numeric_limits<Value>::quiet_NaN());
-    for (const Value value : bad) set(name, [option, value](Options& options) { options.*option = value; });
-    return *this;
-  }
-  Faults& set(const std::string& name, const std::function<void(Options&)>& spoil) {
-    Options options;
-    spoil(options);
-    all_.push_back({name, [use = use_, options] { use(options); }});
-    return *this;
-  }
-
- private:
-  std::vector<Fault>& all_;
-  Use use_;
-};
+using test::expect_each_refused_by_name;
+using test::Fault;
+using test::Faults;
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 
 PreparedCrown dome() { return prepare_crown(test::dome(2, 5)); }
-
-void expect_each_refused_by_name(const std::vector<Fault>& faults) {
-  ASSERT_FALSE(faults.empty());
-  for (const Fault& fault : faults) {
-    SCOPED_TRACE(fault.option);
-    try {
-      fault.call();
-      ADD_FAILURE() << "not refused";
-    } catch (const UsageError& error) {
-      const std::string sentence = error.what();
-      EXPECT_NE(sentence.find("option " + fault.option + " of"), std::string::npos) << sentence;
-      EXPECT_NE(sentence.find("out of its range: "), std::string::npos) << sentence;
-    } catch (const std::exception& error) {
-      ADD_FAILURE() << error.what();
-    }
-  }
-}
 
 TEST(OptionRanges, OfMeshes) {
   std::vector<Fault> faults;
@@ -391,58 +342,6 @@ TEST(OptionRanges, OfGeneratedTeeth) {
       .of("clean_share", &S::clean_share, {-0.1, 1.1})
       .of("hole_share", &S::hole_share, {-0.1, 1.1})
       .of("largest_noise", &S::largest_noise, {-0.1, 0.31});
-  expect_each_refused_by_name(faults);
-}
-
-TEST(OptionRanges, OfTraining) {
-  std::vector<Fault> faults;
-  const auto both = [](const TrainingLoopOptions& loop) {
-    CompletionTrainingOptions completion;
-    completion.loop = loop;
-    try {
-      train_completion({}, completion);
-      ADD_FAILURE() << "not refused by the trainer of the completion network";
-    } catch (const UsageError&) {
-    }
-    SurfaceTrainingOptions surface;
-    surface.loop = loop;
-    train_surface({}, surface);
-  };
-  using L = TrainingLoopOptions;
-  Faults<L>(faults, both)
-      .of("batch", &L::batch, {0})
-      .of("threads", &L::threads, {0, 17})
-      .of("samples", &L::samples, {std::uint64_t{0}})
-      .of("hours", &L::hours, {-0.1})
-      .of("learning_rate", &L::learning_rate, {0.0})
-      .of("lowest_rate", &L::lowest_rate, {-0.1, 1.1})
-      .of("warm_up", &L::warm_up, {-1})
-      .of("weight_decay", &L::weight_decay, {-0.1})
-      .of("gradient_clip", &L::gradient_clip, {0.0})
-      .of("average_decay", &L::average_decay, {-0.1, 1.1})
-      .of("validation_samples", &L::validation_samples, {-1})
-      .of("validation_minutes", &L::validation_minutes, {-0.1})
-      .of("checkpoint_minutes", &L::checkpoint_minutes, {-0.1})
-      .of("report_steps", &L::report_steps, {0})
-      .set("count", [](L& o) { o.processes.count = 0; })
-      .set("rank", [](L& o) { o.processes.rank = -1; })
-      .set("rank", [](L& o) { o.processes.rank = 1; });
-  using C = CompletionTrainingOptions;
-  Faults<C>(faults, [](const C& o) { train_completion({}, o); })
-      .of("unknown_share", &C::unknown_share, {-0.1, 1.1})
-      .of("root_weight", &C::root_weight, {0.0})
-      .of("coarse_weight", &C::coarse_weight, {-0.1})
-      .of("denoise_weight", &C::denoise_weight, {-0.1})
-      .of("chamfer_weight", &C::chamfer_weight, {-0.1})
-      .of("normal_weight", &C::normal_weight, {-0.1})
-      .of("spread_weight", &C::spread_weight, {-0.1})
-      .of("denoise_queries", &C::denoise_queries, {-1})
-      .of("denoise_jitter", &C::denoise_jitter, {-0.1});
-  using S = SurfaceTrainingOptions;
-  Faults<S>(faults, [](const S& o) { train_surface({}, o); })
-      .of("pool", &S::pool, {std::uint64_t{0}})
-      .of("tilt_radians", &S::tilt_radians, {-0.1})
-      .of("scale_deviation", &S::scale_deviation, {-0.1});
   expect_each_refused_by_name(faults);
 }
 

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/program.hpp"
+
+#include "command_line/number_options.hpp"
+#include "command_line/words.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/version.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <vector>
+
+namespace rhizodont::command_line {
+namespace {
+
+int report(const Program& program, ErrorCode code, const std::string& sentence) {
+  fmt::print(stderr, "{}: {}\n", program.name, sentence);
+  return static_cast<int>(code);
+}
+
+int report_unprintable(const Program& program) {
+  return report(program, ErrorCode::unwritable,
+                fmt::format("standard output cannot be written: {}", std::strerror(errno)));
+}
+
+/// What is still in the buffer may meet a full disk.
+int finish_printing(const Program& program, int code) {
+  errno = 0;
+  return std::fflush(stdout) != 0 || std::ferror(stdout) != 0 ? report_unprintable(program) : code;
+}
+
+void describe(const Program& program, CLI::App& app) {
+  app.require_subcommand(1);
+  app.set_version_flag("--version", fmt::format("{} {}", program.name, RHIZODONT_VERSION));
+  app.footer(
+      "Exit codes: 0 done, 2 wrong usage, 3 unusable input, 4 no result that keeps the promises, 5 fault of the "
+      "program, 6 results cannot be written.\n"
+      "'" +
+      program.name + " COMMAND --help' explains a command.");
+  for (const auto add_command : program.commands) add_command(app);
+  take_decimal_numbers(app);
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+/// What the first word was probably meant to be, where it is no command.
+std::optional<std::string> say_unknown_command(const Program& program, const CLI::App& app, const std::string& word) {
+  const std::vector<std::string> names = command_names(app);
+  if (word.starts_with('-') || std::find(names.begin(), names.end(), word) != names.end()) return std::nullopt;
+  std::string sentence = fmt::format("there is no command '{}'", word);
+  if (const auto meant = closest_word(word, names)) return sentence + fmt::format(": did you mean {}?", *meant);
+  std::error_code ignored;
+  if (!program.default_command.empty() && std::filesystem::exists(word, ignored))
+    return sentence + fmt::format(": did you mean {} {}?", program.default_command, word);
+  return sentence + fmt::format(": there are {}", fmt::join(names, ", "));
+}
+
+/// A line about a call that was not understood, with the option that was probably meant.
+std::string say_misunderstood(const CLI::App& app, const CLI::ParseError& error) {
+  for (const CLI::App* command : app.get_subcommands()) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    for (const std::string& word : command->remaining())
+      if (const auto meant = closest_word(word.substr(0, word.find('=')), known); meant && word.starts_with('-'))
+        return fmt::format("there is no option {}: did you mean {}? (see {} --help)", word, *meant,
+                           command->get_name());
+  }
+  return std::string(error.what()) + " (see --help)";
+}
+
+}  // namespace
+
+int run_program(const Program& program, int argc, char** argv) {
+  try {
+    CLI::App app{program.purpose, program.name};
+    describe(program, app);
+    if (argc > 1)
+      if (const auto sentence = say_unknown_command(program, app, argv[1]))
+        return report(program, ErrorCode::wrong_usage, *sentence);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::RuntimeError& done) {
+      return finish_printing(program, done.get_exit_code());
+    } catch (const CLI::Success& help) {
+      return finish_printing(program, app.exit(help));
+    } catch (const CLI::ParseError& error) {
+      return report(program, ErrorCode::wrong_usage, say_misunderstood(app, error));
+    }
+    return finish_printing(program, 0);
+  } catch (const Error& error) {
+    return report(program, error.code(), error_line(error));
+  } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return report_unprintable(program);
+    return report(program, ErrorCode::internal, fault_line(error));
+  }
+}
+
+}  // namespace rhizodont::command_line

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "learning/training_options.hpp"
+#include "networks/safetensors.hpp"
+#include "training/model_card.hpp"
+
+namespace rhizodont::command_line {
+
+/// Tunes this process for training and warns of a slow BLAS on standard error.
+void prepare_for_training();
+
+/// A report as a line of text, without time and line break.
+std::string progress_text(const TrainingProgress& progress);
+
+/// Prints a report with the time.
+void print_progress(const TrainingProgress& progress);
+
+/// What differs between the networks whose weights are exported.
+struct WeightExport {
+  std::filesystem::path folder;  ///< of the training
+  std::filesystem::path weights;
+  bool overwrite = false;  ///< an older card may be replaced
+  std::function<TensorFile(const std::filesystem::path& folder, const std::map<std::string, std::string>& notes)> read;
+  std::function<std::string(const WeightFile&)> card;
+};
+
+/// Writes a folder's best weights and, beside them, the model card. Throws as require_safe_export and the functions.
+void export_weights(const WeightExport& what);
+
+}  // namespace rhizodont::command_line

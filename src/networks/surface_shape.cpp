@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "networks/surface_shape.hpp"
+
+#include <array>
+#include <charconv>
+#include <utility>
+
+#include "networks/surface_sample.hpp"
+#include "rhizodont/error.hpp"
+
+namespace rhizodont {
+namespace {
+
+const std::string format_name = "rhizodont surface 1";
+
+constexpr std::array<std::pair<const char*, int SurfaceShape::*>, 3> sizes{{
+    {"width", &SurfaceShape::width},
+    {"blocks", &SurfaceShape::blocks},
+    {"eigenvectors", &SurfaceShape::eigenvectors},
+}};
+constexpr std::array<std::pair<const char*, bool SurfaceShape::*>, 3> inputs{{
+    {"position", &SurfaceShape::position},
+    {"signature", &SurfaceShape::signature},
+    {"surroundings", &SurfaceShape::surroundings},
+}};
+
+}  // namespace
+
+void note_surface_shape(const SurfaceShape& shape, std::map<std::string, std::string>& metadata) {
+  metadata["format"] = format_name;
+  for (const auto& [name, member] : sizes) metadata["shape." + std::string(name)] = std::to_string(shape.*member);
+  for (const auto& [name, member] : inputs) metadata["input." + std::string(name)] = shape.*member ? "yes" : "no";
+}
+
+SurfaceShape read_surface_shape(const std::map<std::string, std::string>& metadata) {
+  const auto text_of = [&](const std::string& key) {
+    const auto found = metadata.find(key);
+    return found == metadata.end() ? std::string() : found->second;
+  };
+  if (text_of("format") != format_name) throw InputError("This file does not hold weights of a surface network.");
+  SurfaceShape shape;
+  for (const auto& [name, member] : sizes) {
+    const std::string text = text_of("shape." + std::string(name));
+    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), shape.*member);
+    if (text.empty() || failure != std::errc() || end != text.data() + text.size())
+      throw InputError("The weight file does not say how large the network is (" + std::string(name) + ").");
+  }
+  for (const auto& [name, member] : inputs) {
+    const std::string text = text_of("input." + std::string(name));
+    if (text != "yes" && text != "no") throw InputError("The weight file does not say what the network looks at.");
+    shape.*member = text == "yes";
+  }
+  try {
+    check_surface_shape(shape);
+  } catch (const UsageError& error) {
+    throw InputError(error.what());
+  }
+  return shape;
+}
+
+void check_surface_shape(const SurfaceShape& shape) {
+  for (const auto& [name, member] : sizes)
+    if (shape.*member < 1 || shape.*member > 1024)
+      throw UsageError("The surface network's size " + std::string(name) + " is out of range.");
+  if (shape.blocks > 64) throw UsageError("The surface network has too many blocks.");
+  if (!shape.position && !shape.signature && !shape.surroundings)
+    throw UsageError("A surface network must look at something.");
+}
+
+}  // namespace rhizodont
