@@ -44,6 +44,8 @@ function(rhizodont_test name)
     target_link_libraries(${target} PRIVATE rhizodont_${used})
   endforeach()
   rhizodont_warnings(${target})
+  # Compiled together, a test's local names may shadow those of the next test.
+  target_compile_options(${target} PRIVATE -Wno-shadow)
   # One process per room: what tests share (weights, templates) is loaded once.
   add_test(NAME ${name} COMMAND ${target})
 endfunction()

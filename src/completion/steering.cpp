@@ -38,15 +38,15 @@ RootFrame root_frame(const TriangleMesh& crown, const CanonicalFrame& frame, int
   const double to_distal = tooth_type_of_fdi(fdi) < 8 ? 1 : -1;  // +x is distal for upper and mesial for lower teeth
   root.distal = frame.direction_to_world(to_distal * Eigen::Vector3d::UnitX());
   root.lingual = frame.direction_to_world(-Eigen::Vector3d::UnitY());
-  double lowest = std::numeric_limits<double>::lowest();
+  double deepest = std::numeric_limits<double>::lowest();
   for (const Triangle& t : crown.triangles)
-    for (const int v : t) lowest = std::max(lowest, crown.vertices[static_cast<std::size_t>(v)].dot(root.down));
+    for (const int v : t) deepest = std::max(deepest, crown.vertices[static_cast<std::size_t>(v)].dot(root.down));
   const std::vector<BorderPiece> border = border_pieces(crown);
   if (border.empty()) throw InputError("A closed crown has no border where a root could start.");
   const std::vector<int>& base = border[base_piece(border)].vertices;
   for (const int v : base) root.start += crown.vertices[static_cast<std::size_t>(v)];
   root.start /= static_cast<double>(base.size());
-  root.start += (lowest - root.start.dot(root.down)) * root.down;
+  root.start += (deepest - root.start.dot(root.down)) * root.down;
   return root;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evaluation/evaluate_cases.hpp"
 
+#include "base/lower_case.hpp"
 #include "mesh/closest_point.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -21,9 +21,7 @@ namespace {
 
 bool is_mesh_file(const std::filesystem::path& file) {
   constexpr std::array<std::string_view, 5> extensions{".ply", ".stl", ".obj", ".off", ".vtp"};
-  std::string extension = file.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string extension = lower_case(file.extension().string());
   return std::find(extensions.begin(), extensions.end(), extension) != extensions.end();
 }
 

@@ -8,6 +8,7 @@
 
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/smooth_functions.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,11 +22,6 @@ constexpr double pi = std::numbers::pi;
 double bump(double angle, double middle, double half_width) {
   const double d = std::remainder(angle - middle, 2 * pi) / half_width;
   return std::exp(-0.5 * d * d);
-}
-
-double smooth_step(double x) {
-  x = std::clamp(x, 0.0, 1.0);
-  return x * x * (3 - 2 * x);
 }
 
 /// What is drawn for one flange; angles of the surface are against the horizontal, positive downwards.

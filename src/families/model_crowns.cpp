@@ -161,14 +161,13 @@ std::vector<ModelCrown> load_model_crowns(const std::filesystem::path& folder) {
   return crowns;
 }
 
-SyntheticTooth draw_model_crown(const ModelCrown& crown, const ModelCrownFactors& factors, RandomStream& random) {
+SyntheticTooth draw_model_crown(const ModelCrown& crown, double factor, RandomStream& random) {
   SyntheticTooth tooth = crown.mean;
   for (std::size_t k = 0; k < crown.modes.size(); ++k) {
-    const double coefficient = factors.deviation * random.normal(0.0, crown.deviations[k]);
+    const double coefficient = factor * random.normal(0.0, crown.deviations[k]);
     for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v)
       tooth.mesh.vertices[v] += coefficient * crown.modes[k].row(static_cast<Eigen::Index>(v)).transpose();
   }
-  for (Point& p : tooth.mesh.vertices) p *= factors.size;
   settle(tooth);
   return tooth;
 }

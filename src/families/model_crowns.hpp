@@ -27,12 +27,8 @@ struct ModelCrown {
 /// Throws as load_crown_shape_model, InputError if a model's points give no closed surface of genus 0.
 std::vector<ModelCrown> load_model_crowns(const std::filesystem::path& folder);
 
-struct ModelCrownFactors {
-  double deviation = 1;  ///< of the modes' own deviations, >= 0
-  double size = 1;       ///< of the whole crown, > 0
-};
-
-/// A crown of the model in the frame of SyntheticTooth, coefficients of its modes drawn.
-SyntheticTooth draw_model_crown(const ModelCrown& crown, const ModelCrownFactors& factors, RandomStream& random);
+/// A crown of the model in the frame of SyntheticTooth: coefficients of its modes drawn with `factor` times their
+/// deviations.
+SyntheticTooth draw_model_crown(const ModelCrown& crown, double factor, RandomStream& random);
 
 }  // namespace rhizodont

@@ -3,6 +3,7 @@
 
 #include "fusion/fitted_patch.hpp"
 
+#include "mesh/at.hpp"
 #include "mesh/nearest_vertex.hpp"
 
 #include <Eigen/Geometry>
@@ -14,8 +15,6 @@ namespace rhizodont {
 namespace {
 
 constexpr double outward_cosine = 0.3;  // a triangle's normal against the guiding surface's: up to 73 degrees
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 Eigen::Vector3d twice_area(const Point& a, const Point& b, const Point& c) { return (b - a).cross(c - a); }
 

@@ -10,6 +10,7 @@
 #include "base/option_range.hpp"
 #include "fusion/fitted_patch.hpp"
 #include "fusion/mend_angles.hpp"
+#include "mesh/at.hpp"
 
 #include <Eigen/Geometry>
 
@@ -18,8 +19,6 @@
 
 namespace rhizodont {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Opposite angles sum to more than pi.
 bool is_not_delaunay(const FittedPatch& patch, int h) {

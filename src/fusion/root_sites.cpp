@@ -8,6 +8,7 @@
 
 #include "base/option_range.hpp"
 #include "fusion/point_grid.hpp"
+#include "mesh/at.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 
@@ -19,8 +20,6 @@
 
 namespace rhizodont {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 struct Candidate {
   double depth = 0;  // mm behind the crown's border, along the way that the front took

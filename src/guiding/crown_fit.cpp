@@ -9,6 +9,7 @@
 
 #include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/at.hpp"
 #include "mesh/closest_on_triangle.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/geometry.hpp"
@@ -25,8 +26,6 @@
 
 namespace rhizodont {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Where a vertex of the surface belongs on the crown.
 class CrownPlaces {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "intake/units.hpp"
 
+#include "base/lower_case.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 
@@ -30,8 +31,8 @@ std::string unit_in_words(double millimetres_per_unit) {
 
 double millimetres_per_unit(const std::string& name) {
   std::string word;
-  for (const char c : name)
-    if (c != ' ' && c != '.') word += c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+  for (const char c : lower_case(name))
+    if (c != ' ' && c != '.') word += c;
   const std::string singular = word.size() > 3 && word.ends_with('s') ? word.substr(0, word.size() - 1) : word;
   for (const Unit& unit : known_units())
     if (word == unit.option || std::any_of(unit.spellings.begin(), unit.spellings.end(), [&](const char* spelling) {

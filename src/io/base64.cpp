@@ -10,14 +10,14 @@ namespace {
 
 constexpr std::string_view alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-constexpr std::array<std::int8_t, 256> make_values() {
+constexpr std::array<std::int8_t, 256> make_digit_values() {
   std::array<std::int8_t, 256> values{};
   for (auto& value : values) value = -1;
   for (std::size_t i = 0; i < alphabet.size(); ++i)
     values[static_cast<unsigned char>(alphabet[i])] = static_cast<std::int8_t>(i);
   return values;
 }
-constexpr std::array<std::int8_t, 256> values = make_values();
+constexpr std::array<std::int8_t, 256> digit_values = make_digit_values();
 
 }  // namespace
 
@@ -32,7 +32,7 @@ std::string decode_base64(std::string_view text) {
       held = 0;
       continue;
     }
-    const int value = values[static_cast<unsigned char>(c)];
+    const int value = digit_values[static_cast<unsigned char>(c)];
     if (value < 0) break;
     bits = bits << 6 | static_cast<std::uint32_t>(value);
     held += 6;

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/float_bits.hpp"
+#include "base/lower_case.hpp"
 #include "io/attribute_types.hpp"
 #include "io/formats.hpp"
 #include "mesh/mesh_checks.hpp"
@@ -21,18 +22,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
-  return extension;
-}
-
 using Writer = std::string (*)(const MeshFile&);
 
 template <class Function>
 Function function_for(const fs::path& path, const std::map<std::string, Function>& known, const char* verb) {
-  const auto place = known.find(lower_extension(path));
+  const auto place = known.find(lower_case(path.extension().string()));
   if (place != known.end()) return place->second;
   std::string names;
   for (const auto& [name, function] : known) names += (names.empty() ? "" : ", ") + name;
@@ -97,7 +91,7 @@ void require_writable(const MeshFile& file) {
 void require_mesh_ending(const std::filesystem::path& path) { writer_for(path); }
 
 bool holds_floats_only(const std::filesystem::path& path) {
-  const std::string extension = lower_extension(path);
+  const std::string extension = lower_case(path.extension().string());
   return extension == ".stl" || extension == ".glb";
 }
 

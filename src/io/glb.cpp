@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // glTF 2.0 in its binary form, for viewers: one mesh, coloured by where each vertex comes from.
+#include "io/append_bytes.hpp"
 #include "io/formats.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
@@ -19,13 +20,6 @@ using Json = nlohmann::ordered_json;
 // glTF constants
 constexpr int type_uint8 = 5121, type_uint32 = 5125, type_float = 5126;
 constexpr int target_vertices = 34962, target_indices = 34963;
-
-template <class T>
-void append(std::string& bytes, T value) {
-  static_assert(std::endian::native == std::endian::little);
-  const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
-  bytes.append(raw.data(), raw.size());
-}
 
 // Enamel, the band between, cementum; linear RGBA.
 constexpr std::array<std::array<std::uint8_t, 4>, 3> source_colours{
@@ -72,7 +66,7 @@ class GlbWriter {
   int add_positions() {
     const std::size_t start = data_.size();
     for (const Point& p : mesh_.vertices)
-      for (int i = 0; i < 3; ++i) append(data_, static_cast<float>(p[i]));
+      for (int i = 0; i < 3; ++i) append_bytes(data_, static_cast<float>(p[i]));
     const Eigen::AlignedBox3d box = bounding_box(mesh_.vertices);
     const auto corner = [](const Point& p) { return Json{p.x(), p.y(), p.z()}; };
     return add_accessor(start, target_vertices, type_float, mesh_.vertices.size(), "VEC3",
@@ -83,7 +77,7 @@ class GlbWriter {
     const std::size_t start = data_.size();
     for (const Eigen::Vector3d& n : vertex_normals(mesh_)) {
       const Eigen::Vector3f unit = (n.isZero() ? Eigen::Vector3d::UnitZ().eval() : n).cast<float>();
-      for (int i = 0; i < 3; ++i) append(data_, unit[i]);
+      for (int i = 0; i < 3; ++i) append_bytes(data_, unit[i]);
     }
     return add_accessor(start, target_vertices, type_float, mesh_.vertices.size(), "VEC3");
   }
@@ -93,18 +87,19 @@ class GlbWriter {
     std::size_t start = data_.size();
     for (const double source : sources)
       for (const std::uint8_t part : source_colours[source >= 0 && source < 3 ? static_cast<std::size_t>(source) : 0])
-        append(data_, part);
+        append_bytes(data_, part);
     attributes["COLOR_0"] =
         add_accessor(start, target_vertices, type_uint8, sources.size(), "VEC4", {{"normalized", true}});
     start = data_.size();
-    for (const double source : sources) append(data_, static_cast<std::uint32_t>(source));  // one byte, padded to four
+    for (const double source : sources)
+      append_bytes(data_, static_cast<std::uint32_t>(source));  // one byte, padded to four
     attributes["_SOURCE"] = add_accessor(start, target_vertices, type_uint8, sources.size(), "SCALAR");
   }
 
   int add_indices() {
     const std::size_t start = data_.size();
     for (const Triangle& triangle : mesh_.triangles)
-      for (const std::int32_t v : triangle) append(data_, static_cast<std::uint32_t>(v));
+      for (const std::int32_t v : triangle) append_bytes(data_, static_cast<std::uint32_t>(v));
     return add_accessor(start, target_indices, type_uint32, 3 * mesh_.triangles.size(), "SCALAR");
   }
 
@@ -112,11 +107,11 @@ class GlbWriter {
     std::string text = json_.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     std::string bytes = "glTF";
-    append(bytes, std::uint32_t{2});
-    append(bytes, static_cast<std::uint32_t>(12 + 8 + text.size() + 8 + data_.size()));
-    append(bytes, static_cast<std::uint32_t>(text.size()));
+    append_bytes(bytes, std::uint32_t{2});
+    append_bytes(bytes, static_cast<std::uint32_t>(12 + 8 + text.size() + 8 + data_.size()));
+    append_bytes(bytes, static_cast<std::uint32_t>(text.size()));
     bytes += "JSON" + text;
-    append(bytes, static_cast<std::uint32_t>(data_.size()));
+    append_bytes(bytes, static_cast<std::uint32_t>(data_.size()));
     bytes.append("BIN\0", 4);
     return bytes + data_;
   }

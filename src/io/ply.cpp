@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PLY: G. Turk, "The PLY Polygon File Format", 1994; type names of both generations ("uchar" and "uint8").
+#include "io/append_bytes.hpp"
 #include "io/attribute_types.hpp"
 #include "io/cursors.hpp"
 #include "io/face_list.hpp"
@@ -401,11 +402,7 @@ const char* name_of(AttributeType type) {
 }
 
 void append(std::string& bytes, AttributeType type, double value) {
-  static_assert(std::endian::native == std::endian::little);
-  with_attribute_type(type, [&](auto kind) {
-    const auto raw = std::bit_cast<std::array<char, sizeof(kind)>>(static_cast<decltype(kind)>(value));
-    bytes.append(raw.data(), raw.size());
-  });
+  with_attribute_type(type, [&](auto kind) { append_bytes(bytes, static_cast<decltype(kind)>(value)); });
 }
 
 }  // namespace

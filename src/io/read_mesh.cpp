@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From bytes to a mesh: which reader, and what all formats have in common.
+#include "base/lower_case.hpp"
 #include "io/formats.hpp"
 #include "io/notes.hpp"
 #include "io/recognise.hpp"
@@ -28,9 +29,7 @@ namespace fs = std::filesystem;
 /// The ending of a name in lower case with its dot; also of a bare "ply" or ".ply". An ending ".gz" is passed over.
 std::string format_hint(fs::path name) {
   if (name.extension() == ".gz" || name.extension() == ".GZ") name = name.stem();
-  std::string hint = name.has_extension() ? name.extension().string() : name.filename().string();
-  for (char& c : hint)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  const std::string hint = lower_case((name.has_extension() ? name.extension() : name.filename()).string());
   return hint.starts_with('.') ? hint : "." + hint;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/recognise.hpp"
 
+#include "base/lower_case.hpp"
 #include "io/cursors.hpp"
 #include "io/stl.hpp"
 
@@ -132,13 +133,6 @@ void refuse_known_others(std::string_view bytes) {
   if (bytes.starts_with("MM")) refuse("a 3DS scene", Kind::other_mesh);
 }
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
-  return result;
-}
-
 /// The first element of an XML text in lower case, without the prefix of its name space; empty if there is none.
 std::string root_element(std::string_view text) {
   for (std::size_t place = text.find('<'); place != std::string_view::npos; place = text.find('<', place + 1)) {
@@ -148,11 +142,11 @@ std::string root_element(std::string_view text) {
       if (place == std::string_view::npos) break;
       continue;
     }
-    if (lower(rest.substr(0, 13)) == "!doctype html") return "html";
+    if (lower_case(rest.substr(0, 13)) == "!doctype html") return "html";
     if (rest.starts_with('!') || rest.starts_with('?')) continue;
     const std::string_view name = rest.substr(0, rest.find_first_of(" \t\r\n/>"));
     const std::size_t colon = name.find(':');
-    return lower(name.substr(colon == std::string_view::npos ? 0 : colon + 1));
+    return lower_case(name.substr(colon == std::string_view::npos ? 0 : colon + 1));
   }
   return {};
 }
@@ -200,7 +194,7 @@ std::size_t leading_numbers(std::string_view line, std::vector<Number>& numbers)
 
 bool has_off_header(std::string_view text) {
   ContentLines lines(text.substr(0, 65536));
-  std::string word = lower(TextCursor(lines.next().value_or("")).word().value_or(""));
+  std::string word = lower_case(TextCursor(lines.next().value_or("")).word().value_or(""));
   while (!word.empty() && word.back() >= '0' && word.back() <= '9') word.pop_back();
   for (const char* prefix : {"st", "c", "n", "4", "n"})
     if (word != "off" && word.starts_with(prefix)) word.erase(0, std::string_view(prefix).size());
@@ -292,7 +286,7 @@ MeshFormat recognise(std::string_view bytes, std::string_view ending) {
   refuse_known_others(bytes);
   if (bytes.starts_with("ply") && bytes.size() > 3 && " \t\r\n"sv.find(bytes[3]) != std::string_view::npos)
     return MeshFormat::ply;
-  if (lower(bytes.substr(0, 18)) == "# vtk datafile ver") return MeshFormat::vtk;
+  if (lower_case(bytes.substr(0, 18)) == "# vtk datafile ver") return MeshFormat::vtk;
   // raw data may follow after these beginnings
   if (bytes[bytes.find_first_not_of(" \t\r\n\v\f")] == '<' && is_text(bytes.substr(0, 64)))
     return recognise_xml(bytes, ending);

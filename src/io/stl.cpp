@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // STL as written by scanners and CAD programs: 80 bytes of anything, a count, 50 bytes per triangle; or text.
 #include "io/stl.hpp"
+#include "io/append_bytes.hpp"
 #include "io/cursors.hpp"
 #include "io/formats.hpp"
 #include "io/notes.hpp"
@@ -121,13 +122,6 @@ std::string unit_in_comments(const std::vector<std::string>& comments) {
   return "millimetres";
 }
 
-template <class T>
-void append(std::string& bytes, T value) {
-  static_assert(std::endian::native == std::endian::little);
-  const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
-  bytes.append(raw.data(), raw.size());
-}
-
 }  // namespace
 
 bool is_exact_binary_stl(std::string_view bytes) {
@@ -155,13 +149,14 @@ std::string write_stl(const MeshFile& file) {
   std::string bytes = "Rhizodont, " + unit_in_comments(file.comments);
   bytes.resize(80, ' ');
   bytes.reserve(header_size + record_size * mesh.triangles.size());
-  append(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
+  append_bytes(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Eigen::Vector3f normal = triangle_normal(mesh, t).cast<float>();
-    for (int i = 0; i < 3; ++i) append(bytes, normal[i]);
+    for (int i = 0; i < 3; ++i) append_bytes(bytes, normal[i]);
     for (const std::int32_t v : mesh.triangles[t])
-      for (int i = 0; i < 3; ++i) append(bytes, static_cast<float>(mesh.vertices[static_cast<std::size_t>(v)][i]));
-    append(bytes, std::uint16_t{0});
+      for (int i = 0; i < 3; ++i)
+        append_bytes(bytes, static_cast<float>(mesh.vertices[static_cast<std::size_t>(v)][i]));
+    append_bytes(bytes, std::uint16_t{0});
   }
   return bytes;
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Legacy VTK files ("VTK File Formats", Kitware), versions 1 to 5.1, with a surface (POLYDATA): text or big-endian
 // bytes.
+#include "base/lower_case.hpp"
 #include "io/colours.hpp"
 #include "io/cursors.hpp"
 #include "io/face_list.hpp"
@@ -24,13 +25,6 @@ struct ArrayType {
   VtkNumber number = VtkNumber::float64;
 };
 
-std::string lower(std::string_view word) {
-  std::string result(word);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c; });
-  return result;
-}
-
 std::optional<ArrayType> type_named(std::string_view name) {
   using enum VtkNumber;
   static const std::map<std::string_view, VtkNumber> numbers{{"char", int8},
@@ -47,7 +41,7 @@ std::optional<ArrayType> type_named(std::string_view name) {
                                                              {"vtkidtype", int32},
                                                              {"float", float32},
                                                              {"double", float64}};
-  const std::string word = lower(name);
+  const std::string word = lower_case(name);
   if (word == "bit") return ArrayType{ArrayType::Kind::bit, uint8};
   if (word == "string" || word == "utf8_string") return ArrayType{ArrayType::Kind::text, uint8};
   const auto place = numbers.find(word);
@@ -294,7 +288,7 @@ class VtkReader {
       static const std::map<std::string_view, std::uint64_t> components{
           {"vectors", 3},    {"normals", 3},      {"tensors", 9},   {"tensors6", 6},
           {"global_ids", 1}, {"pedigree_ids", 1}, {"edge_flags", 1}};
-      const auto place = components.find(lower(keyword));
+      const auto place = components.find(lower_case(keyword));
       if (place == components.end()) return false;
       values(type(words), tuples_, place->second);
     }

@@ -11,6 +11,7 @@
 
 #include <numeric>
 
+#include "learning/points_of.hpp"
 #include "networks/neighbours.hpp"
 #include "rhizodont/error.hpp"
 
@@ -31,11 +32,6 @@ torch::Tensor fourier_features(const torch::Tensor& points) {
   return torch::cat({points, torch::sin(phases), torch::cos(phases)}, -1);
 }
 
-std::span<const float> row(const torch::Tensor& points, std::int64_t b) {
-  const std::int64_t size = points.size(1) * points.size(2);
-  return {points.data_ptr<float>() + b * size, static_cast<std::size_t>(size)};
-}
-
 /// int32 B x queries x k: neighbours of each crown's queries among its keys (both contiguous float B x n x 3).
 torch::Tensor batch_neighbours(const torch::Tensor& queries, const torch::Tensor& keys, std::int64_t k) {
   const std::int64_t batch = queries.size(0), stride = queries.size(1) * k;
@@ -43,7 +39,7 @@ torch::Tensor batch_neighbours(const torch::Tensor& queries, const torch::Tensor
   std::int32_t* out = result.data_ptr<std::int32_t>();
   at::parallel_for(0, batch, 1, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t b = begin; b < end; ++b) {
-      const auto found = nearest_keys(row(queries, b), row(keys, b), static_cast<int>(k));
+      const auto found = nearest_keys(points_of(queries, b), points_of(keys, b), static_cast<int>(k));
       std::copy(found.begin(), found.end(), out + b * stride);
     }
   });

@@ -7,17 +7,13 @@
 
 #include <ATen/Parallel.h>
 
+#include "learning/points_of.hpp"
 #include "networks/neighbours.hpp"
 
 namespace rhizodont {
 namespace {
 
 using layers::gather_rows;
-
-std::span<const float> row(const torch::Tensor& points, std::int64_t b) {
-  const std::int64_t size = points.size(1) * points.size(2);
-  return {points.data_ptr<float>() + b * size, static_cast<std::size_t>(size)};
-}
 
 /// Over the second axis; 0 where all weights are.
 torch::Tensor weighted_mean(const torch::Tensor& values, const torch::Tensor& weights) {
@@ -37,8 +33,8 @@ ClosestPoints closest_points(const torch::Tensor& first, const torch::Tensor& se
     for (std::int64_t job = begin; job < end; ++job) {
       const std::int64_t sample = job / 2;
       const bool forward = job % 2 == 0;
-      const auto found =
-          forward ? closest_keys(row(a, sample), row(b, sample)) : closest_keys(row(b, sample), row(a, sample));
+      const auto found = forward ? closest_keys(points_of(a, sample), points_of(b, sample))
+                                 : closest_keys(points_of(b, sample), points_of(a, sample));
       std::copy(found.begin(), found.end(), forward ? forth + sample * n : back + sample * m);
     }
   });

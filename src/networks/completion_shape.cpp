@@ -11,9 +11,9 @@
 namespace rhizodont {
 namespace {
 
-const std::string format_name = "rhizodont completion 4";
+const std::string completion_format = "rhizodont completion 4";
 
-constexpr std::array<std::pair<const char*, int CompletionShape::*>, 10> sizes{{
+constexpr std::array<std::pair<const char*, int CompletionShape::*>, 10> completion_sizes{{
     {"input_points", &CompletionShape::input_points},
     {"centres_1", &CompletionShape::centres_1},
     {"centres_2", &CompletionShape::centres_2},
@@ -29,16 +29,17 @@ constexpr std::array<std::pair<const char*, int CompletionShape::*>, 10> sizes{{
 }  // namespace
 
 void note_shape(const CompletionShape& shape, std::map<std::string, std::string>& metadata) {
-  metadata["format"] = format_name;
-  for (const auto& [name, member] : sizes) metadata["shape." + std::string(name)] = std::to_string(shape.*member);
+  metadata["format"] = completion_format;
+  for (const auto& [name, member] : completion_sizes)
+    metadata["shape." + std::string(name)] = std::to_string(shape.*member);
 }
 
 CompletionShape read_shape(const std::map<std::string, std::string>& metadata) {
   const auto format = metadata.find("format");
-  if (format == metadata.end() || format->second != format_name)
+  if (format == metadata.end() || format->second != completion_format)
     throw InputError("This file does not hold weights of the completion network.");
   CompletionShape shape;
-  for (const auto& [name, member] : sizes) {
+  for (const auto& [name, member] : completion_sizes) {
     const auto found = metadata.find("shape." + std::string(name));
     const std::string text = found == metadata.end() ? "" : found->second;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), shape.*member);
@@ -54,7 +55,7 @@ CompletionShape read_shape(const std::map<std::string, std::string>& metadata) {
 }
 
 void check_shape(const CompletionShape& shape) {
-  for (const auto& [name, member] : sizes) {
+  for (const auto& [name, member] : completion_sizes) {
     if (shape.*member < 1 || shape.*member > 65536)
       throw UsageError("The network's size " + std::string(name) + " is out of range.");
   }

@@ -12,14 +12,14 @@
 namespace rhizodont {
 namespace {
 
-const std::string format_name = "rhizodont surface 1";
+const std::string surface_format = "rhizodont surface 1";
 
-constexpr std::array<std::pair<const char*, int SurfaceShape::*>, 3> sizes{{
+constexpr std::array<std::pair<const char*, int SurfaceShape::*>, 3> surface_sizes{{
     {"width", &SurfaceShape::width},
     {"blocks", &SurfaceShape::blocks},
     {"eigenvectors", &SurfaceShape::eigenvectors},
 }};
-constexpr std::array<std::pair<const char*, bool SurfaceShape::*>, 3> inputs{{
+constexpr std::array<std::pair<const char*, bool SurfaceShape::*>, 3> surface_inputs{{
     {"position", &SurfaceShape::position},
     {"signature", &SurfaceShape::signature},
     {"surroundings", &SurfaceShape::surroundings},
@@ -28,9 +28,11 @@ constexpr std::array<std::pair<const char*, bool SurfaceShape::*>, 3> inputs{{
 }  // namespace
 
 void note_surface_shape(const SurfaceShape& shape, std::map<std::string, std::string>& metadata) {
-  metadata["format"] = format_name;
-  for (const auto& [name, member] : sizes) metadata["shape." + std::string(name)] = std::to_string(shape.*member);
-  for (const auto& [name, member] : inputs) metadata["input." + std::string(name)] = shape.*member ? "yes" : "no";
+  metadata["format"] = surface_format;
+  for (const auto& [name, member] : surface_sizes)
+    metadata["shape." + std::string(name)] = std::to_string(shape.*member);
+  for (const auto& [name, member] : surface_inputs)
+    metadata["input." + std::string(name)] = shape.*member ? "yes" : "no";
 }
 
 SurfaceShape read_surface_shape(const std::map<std::string, std::string>& metadata) {
@@ -38,15 +40,15 @@ SurfaceShape read_surface_shape(const std::map<std::string, std::string>& metada
     const auto found = metadata.find(key);
     return found == metadata.end() ? std::string() : found->second;
   };
-  if (text_of("format") != format_name) throw InputError("This file does not hold weights of a surface network.");
+  if (text_of("format") != surface_format) throw InputError("This file does not hold weights of a surface network.");
   SurfaceShape shape;
-  for (const auto& [name, member] : sizes) {
+  for (const auto& [name, member] : surface_sizes) {
     const std::string text = text_of("shape." + std::string(name));
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), shape.*member);
     if (text.empty() || failure != std::errc() || end != text.data() + text.size())
       throw InputError("The weight file does not say how large the network is (" + std::string(name) + ").");
   }
-  for (const auto& [name, member] : inputs) {
+  for (const auto& [name, member] : surface_inputs) {
     const std::string text = text_of("input." + std::string(name));
     if (text != "yes" && text != "no") throw InputError("The weight file does not say what the network looks at.");
     shape.*member = text == "yes";
@@ -60,7 +62,7 @@ SurfaceShape read_surface_shape(const std::map<std::string, std::string>& metada
 }
 
 void check_surface_shape(const SurfaceShape& shape) {
-  for (const auto& [name, member] : sizes)
+  for (const auto& [name, member] : surface_sizes)
     if (shape.*member < 1 || shape.*member > 1024)
       throw UsageError("The surface network's size " + std::string(name) + " is out of range.");
   if (shape.blocks > 64) throw UsageError("The surface network has too many blocks.");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "rhizodont/tooth_file.hpp"
+#include "base/lower_case.hpp"
 #include "teeth/fdi.hpp"
 
 #include <algorithm>
@@ -127,9 +128,7 @@ void require_format_holds(const CompletedTooth& tooth, const std::filesystem::pa
 
 void refer_to_file(CompletionRecord& record, const MeshFile& crown, const std::filesystem::path& output) {
   std::vector<std::string> notes = crown.notes;
-  std::string ending = output.extension().string();
-  for (char& c : ending)
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c + ('a' - 'A'));
+  const std::string ending = lower_case(output.extension().string());
   const bool has_colours = !colours_of(crown).empty();
   if (!has_colours && !colour_parts(crown).empty())
     notes.push_back("The scan's colours were left out: they are not between 0 and 255.");

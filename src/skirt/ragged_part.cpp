@@ -9,6 +9,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/at.hpp"
 #include "mesh/border_pieces.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/edge_distance.hpp"
@@ -25,8 +26,6 @@
 
 namespace rhizodont {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 bool runs_the_same_way(const TriangleMesh& mesh, int g, int h) {
   return half_edge_from(mesh, g) == half_edge_from(mesh, h);

@@ -80,19 +80,11 @@ TriangleMesh draw_low_crown(const SyntheticTooth& tooth, RandomStream& random) {
 std::optional<SyntheticTooth> draw_model_crown_of_type(const std::vector<ModelCrown>& models, int type,
                                                        RandomStream& random) {
   constexpr double factor = 1.2;  // of the models' own deviations: what 95 people vary less than all
-  constexpr int teeth_of_jaw = tooth_type_count / 2;
-  constexpr double third_molar_size = 0.95, third_molar_deviation = 0.05;
-  // No model has third molars; their crowns are second molars' made smaller, and less alike.
-  const bool third_molar = type % teeth_of_jaw == teeth_of_jaw - 1;
   std::vector<const ModelCrown*> fitting;
   for (const ModelCrown& model : models)
-    if (model.mean.type == (third_molar ? type - 1 : type)) fitting.push_back(&model);
+    if (model.mean.type == type) fitting.push_back(&model);
   if (fitting.empty()) return std::nullopt;
-  const ModelCrown& model = *fitting[random.index(fitting.size())];
-  const double size = third_molar ? third_molar_size + random.normal(0.0, third_molar_deviation) : 1;
-  SyntheticTooth crown = draw_model_crown(model, {.deviation = factor, .size = size}, random);
-  crown.type = type;
-  return crown;
+  return draw_model_crown(*fitting[random.index(fitting.size())], factor, random);
 }
 
 std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families, const std::vector<ModelCrown>& models,

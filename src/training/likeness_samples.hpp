@@ -25,8 +25,7 @@ TriangleMesh draw_scanned_crown(const SyntheticTooth& tooth, RandomStream& rando
 /// gum lines left no disc.
 TriangleMesh draw_low_crown(const SyntheticTooth& tooth, RandomStream& random);
 
-/// A crown of a left type (0..15) drawn from its statistical models, left or right; a third molar, which no model has,
-/// from the second molar's made smaller. Nothing where there are none.
+/// A crown of a left type (0..15) drawn from its statistical models, left or right; nothing where there are none.
 std::optional<SyntheticTooth> draw_model_crown_of_type(const std::vector<ModelCrown>& models, int type,
                                                        RandomStream& random);
 

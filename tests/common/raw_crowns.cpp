@@ -260,28 +260,28 @@ void tear_border(Work& work, RandomStream& random) {
 }
 
 using Addition = void (*)(Work&, RandomStream&);
-struct Kind {
+struct RawKind {
   const char* name;
   Addition add;
 };
-constexpr std::array<Kind, 10> kinds{{{"plain", add_nothing},
-                                      {"bridges", add_bridges},
-                                      {"handles", add_handles},
-                                      {"slits", add_slits},
-                                      {"holes", cut_holes},
-                                      {"pieces", add_pieces},
-                                      {"touching vertices", add_touching_vertices},
-                                      {"crowded edges", add_crowded_edges},
-                                      {"crossings", add_crossings},
-                                      {"torn border", tear_border}}};
-constexpr const char* combination = "combination";
+constexpr std::array<RawKind, 10> raw_kind_list{{{"plain", add_nothing},
+                                                 {"bridges", add_bridges},
+                                                 {"handles", add_handles},
+                                                 {"slits", add_slits},
+                                                 {"holes", cut_holes},
+                                                 {"pieces", add_pieces},
+                                                 {"touching vertices", add_touching_vertices},
+                                                 {"crowded edges", add_crowded_edges},
+                                                 {"crossings", add_crossings},
+                                                 {"torn border", tear_border}}};
+constexpr const char* raw_combination = "combination";
 
 }  // namespace
 
 std::vector<std::string> raw_kinds() {
   std::vector<std::string> names;
-  for (const Kind& kind : kinds) names.emplace_back(kind.name);
-  names.emplace_back(combination);
+  for (const RawKind& kind : raw_kind_list) names.emplace_back(kind.name);
+  names.emplace_back(raw_combination);
   return names;
 }
 
@@ -294,10 +294,11 @@ TriangleMesh raw_crown(const TriangleMesh& crown, const std::vector<std::uint8_t
   RandomStream random(seed, 900 + place);
   Work work{crown, {}};
   for (const std::uint8_t tooth : is_tooth) work.gum.push_back(tooth == 0 ? 1 : 0);
-  if (place < kinds.size())
-    kinds[place].add(work, random);
+  if (place < raw_kind_list.size())
+    raw_kind_list[place].add(work, random);
   else
-    for (std::uint64_t k = 3 + random.index(3); k-- > 0;) kinds[1 + random.index(kinds.size() - 1)].add(work, random);
+    for (std::uint64_t k = 3 + random.index(3); k-- > 0;)
+      raw_kind_list[1 + random.index(raw_kind_list.size() - 1)].add(work, random);
   for (Point& p : work.mesh.vertices) p = nearest_float(p);
   return compact(work.mesh).mesh;
 }

@@ -3,6 +3,7 @@
 #include "completion/likeness.hpp"
 
 #include "completion/mean_crown_agreement.hpp"
+#include "completion/product_atlas.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "teeth/fdi.hpp"
@@ -21,19 +22,15 @@
 namespace rhizodont {
 namespace {
 
-const std::filesystem::path root = RHIZODONT_SOURCE_DIR;
-
-const Atlas& atlas() {
-  static const Atlas loaded = load_atlas(root / "models" / "atlas.safetensors");
-  return loaded;
-}
+using test::atlas;
+using test::source_folder;
 
 const LikenessModel& shipped() {
-  static const LikenessModel model = load_likeness(root / "models" / "likeness.safetensors");
+  static const LikenessModel model = load_likeness(source_folder / "models" / "likeness.safetensors");
   return model;
 }
 
-TriangleMesh sample(const std::string& name) { return load_mesh(root / "samples" / name).mesh; }
+TriangleMesh sample(const std::string& name) { return load_mesh(source_folder / "samples" / name).mesh; }
 
 Likeness likeness_of(const TriangleMesh& crown) { return likeness(crown, growth_axis(crown), shipped().classifier); }
 
@@ -122,7 +119,7 @@ TEST(Likeness, FewCrownsGiveNoBounds) {
 
 TEST(Likeness, BoundsGoThroughAFile) {
   const auto file = std::filesystem::path(testing::TempDir()) / "likeness.safetensors";
-  TensorFile weights = read_safetensors(root / "models" / "likeness.safetensors");
+  TensorFile weights = read_safetensors(source_folder / "models" / "likeness.safetensors");
   note_bounds({1.5, -0.25, 3}, weights);
   write_safetensors(file, weights);
   const LikenessBounds bounds = load_likeness(file).bounds;

@@ -4,6 +4,7 @@
 // Runs on what the project ships: the crowns in samples/ and models/atlas.safetensors.
 #include "completion/registration.hpp"
 #include "completion/mean_crowns.hpp"
+#include "completion/product_atlas.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
@@ -24,12 +25,8 @@
 namespace rhizodont {
 namespace {
 
-const std::filesystem::path root = RHIZODONT_SOURCE_DIR;
-
-const Atlas& atlas() {
-  static const Atlas loaded = load_atlas(root / "models" / "atlas.safetensors");
-  return loaded;
-}
+using test::atlas;
+using test::source_folder;
 
 struct Sample {
   int fdi;
@@ -38,7 +35,7 @@ struct Sample {
 constexpr Sample samples[] = {
     {11, "crown_11.stl"}, {23, "crown_23.ply"}, {34, "crown_34.ply"}, {36, "crown_36.stl"}, {16, "crown_16.ply"}};
 
-TriangleMesh sample_crown(const Sample& sample) { return load_mesh(root / "samples" / sample.file).mesh; }
+TriangleMesh sample_crown(const Sample& sample) { return load_mesh(source_folder / "samples" / sample.file).mesh; }
 
 const MeanCrown& mean_of(int fdi) { return atlas().types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))]; }
 

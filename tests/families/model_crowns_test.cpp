@@ -51,7 +51,7 @@ TEST_F(ModelCrowns, AreCutJustAboveTheirEndToAnOpenCrown) {
   for (std::size_t i = 0; i < all_models().size(); i += 5) {
     SCOPED_TRACE(i);
     RandomStream random(7, i);
-    const SyntheticTooth tooth = draw_model_crown(all_models()[i], {.deviation = 0}, random);
+    const SyntheticTooth tooth = draw_model_crown(all_models()[i], 0, random);
     const auto crown = crop_crown(tooth, {.junction_share = 1, .offset_mm = 0.5});
     ASSERT_TRUE(crown);
     EXPECT_GT(growth_axis(*crown).z(), 0.95);
@@ -64,15 +64,15 @@ TEST_F(ModelCrowns, AreAsTheStreamAndTheFactorSay) {
   const ModelCrown& model = all_models().front();
   RandomStream first(3, 1), again(3, 1), other(4, 1), unvaried(5, 1);
   const auto spread = [&](const SyntheticTooth& tooth) {
-    const SyntheticTooth mean = draw_model_crown(model, {.deviation = 0}, unvaried);
+    const SyntheticTooth mean = draw_model_crown(model, 0, unvaried);
     double sum = 0;
     for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v)
       sum += (tooth.mesh.vertices[v] - mean.mesh.vertices[v]).norm();
     return sum / static_cast<double>(tooth.mesh.vertices.size());
   };
-  const SyntheticTooth tooth = draw_model_crown(model, {}, first);
-  EXPECT_EQ(tooth.mesh.vertices, draw_model_crown(model, {}, again).mesh.vertices);
-  EXPECT_NE(tooth.mesh.vertices, draw_model_crown(model, {}, other).mesh.vertices);
+  const SyntheticTooth tooth = draw_model_crown(model, 1, first);
+  EXPECT_EQ(tooth.mesh.vertices, draw_model_crown(model, 1, again).mesh.vertices);
+  EXPECT_NE(tooth.mesh.vertices, draw_model_crown(model, 1, other).mesh.vertices);
   EXPECT_GT(spread(tooth), 0.1);
   EXPECT_LT(spread(tooth), 2);
 }

@@ -34,7 +34,7 @@ Joining octahedron_dual() {
   return joining;
 }
 
-std::vector<Triangle> octahedron() {
+std::vector<Triangle> octahedron_triangles() {
   std::vector<Triangle> all = pyramid().triangles;
   for (const Triangle& t : lower_half(5)) all.push_back(t);
   return as_set(all);
@@ -44,7 +44,7 @@ void expect_octahedron(const JoinedTooth& tooth, int filled) {
   test::expect_crown_kept(pyramid(), tooth);
   test::expect_ball(tooth.mesh);
   EXPECT_EQ(tooth.mesh.vertices.size(), 6U);
-  EXPECT_EQ(as_set(tooth.mesh.triangles), octahedron());
+  EXPECT_EQ(as_set(tooth.mesh.triangles), octahedron_triangles());
   EXPECT_EQ(tooth.triangles_filled, filled);
   EXPECT_EQ(tooth.holes_filled, filled > 0 ? 1 : 0);
 }

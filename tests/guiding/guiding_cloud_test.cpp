@@ -16,13 +16,13 @@
 namespace rhizodont {
 namespace {
 
-constexpr double radius = 5;
+constexpr double dome_radius = 5;
 
-TriangleMesh upper_half() { return test::dome(4, radius); }
+TriangleMesh upper_half() { return test::dome(4, dome_radius); }
 
 /// Points of the whole ball, moved by `shift` and disturbed.
 OrientedPoints prediction(const Eigen::Vector3d& shift, double noise) {
-  const SurfaceSamples samples = sample_surface(test::sphere(5, radius), 3000, 3);
+  const SurfaceSamples samples = sample_surface(test::sphere(5, dome_radius), 3000, 3);
   OrientedPoints points{samples.points, samples.normals};
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
@@ -34,7 +34,7 @@ double mean_distance_from_ball(const GuidingCloud& cloud) {
   double sum = 0;
   const auto first = static_cast<std::size_t>(cloud.crown_samples);
   for (std::size_t i = first; i < cloud.samples.points.size(); ++i)
-    sum += std::abs(cloud.samples.points[i].norm() - radius);
+    sum += std::abs(cloud.samples.points[i].norm() - dome_radius);
   return sum / static_cast<double>(cloud.samples.points.size() - first);
 }
 

@@ -114,7 +114,7 @@ TEST(Ply, SavingTwiceGivesTheSameBytes) {
   EXPECT_EQ(test::read_all(folder.path() / "a.ply"), test::read_all(folder.path() / "b.ply"));
 }
 
-std::string changed(const std::string& what, const std::string& by) {
+std::string changed_ply(const std::string& what, const std::string& by) {
   std::string text = ascii_ply;
   return text.replace(text.find(what), what.size(), by);
 }
@@ -123,24 +123,25 @@ TEST(Ply, BadHeadersAreRefusedWithTheirLine) {
   expect_refused("a.ply", "", "empty");
   expect_refused("a.ply", "PLX\n", "does not begin with 'ply'");
   expect_refused("a.ply", "ply\nformat ascii 1.0\nelement vertex 3\n", "line 4: the file ends within its header");
-  expect_refused("a.ply", changed("format ascii 1.0", "format text 1.0"), "line 2: 'text' is no format");
-  expect_refused("a.ply", changed("format ascii 1.0", "comment none"), "does not say the file's format");
-  expect_refused("a.ply", changed("property float x", "property floot x"), "line 6: 'floot' is no type");
-  expect_refused("a.ply", changed("property float x", "property list float int q"), "line 6");
-  expect_refused("a.ply", changed("property float y", "property float x"), "line 7: the property 'x' is there twice");
-  expect_refused("a.ply", changed("element face 2", "element vertex 2"),
+  expect_refused("a.ply", changed_ply("format ascii 1.0", "format text 1.0"), "line 2: 'text' is no format");
+  expect_refused("a.ply", changed_ply("format ascii 1.0", "comment none"), "does not say the file's format");
+  expect_refused("a.ply", changed_ply("property float x", "property floot x"), "line 6: 'floot' is no type");
+  expect_refused("a.ply", changed_ply("property float x", "property list float int q"), "line 6");
+  expect_refused("a.ply", changed_ply("property float y", "property float x"),
+                 "line 7: the property 'x' is there twice");
+  expect_refused("a.ply", changed_ply("element face 2", "element vertex 2"),
                  "line 12: the element 'vertex' is there twice");
-  expect_refused("a.ply", changed("element face 2", "element face many"), "line 12");
-  expect_refused("a.ply", changed("element vertex 4", "element vertex -4"), "line 5");
-  expect_refused("a.ply", changed("element vertex 4", "nonsense"), "line 5: 'nonsense'");
-  expect_refused("a.ply", changed("property float z", "property float w"), "no x, y and z");
-  expect_refused("a.ply", changed("vertex_index", "corners"), "no list of vertices");
+  expect_refused("a.ply", changed_ply("element face 2", "element face many"), "line 12");
+  expect_refused("a.ply", changed_ply("element vertex 4", "element vertex -4"), "line 5");
+  expect_refused("a.ply", changed_ply("element vertex 4", "nonsense"), "line 5: 'nonsense'");
+  expect_refused("a.ply", changed_ply("property float z", "property float w"), "no x, y and z");
+  expect_refused("a.ply", changed_ply("vertex_index", "corners"), "no list of vertices");
 }
 
 TEST(Ply, HeadersThatLieAllocateNothing) {
-  expect_refused("a.ply", changed("element vertex 4", "element vertex 4000000000000"),
+  expect_refused("a.ply", changed_ply("element vertex 4", "element vertex 4000000000000"),
                  "announces 4000000000000 elements 'vertex'");
-  expect_refused("a.ply", changed("element face 2", "element face 18446744073709551615"), "elements 'face'");
+  expect_refused("a.ply", changed_ply("element face 2", "element face 18446744073709551615"), "elements 'face'");
   std::string binary = binary_ply(std::endian::little);
   binary.replace(binary.find("element vertex 4"), 16, "element vertex 999999999999");
   expect_refused("a.ply", binary, "announces 999999999999 elements 'vertex'");
@@ -157,17 +158,18 @@ TEST(Ply, EveryTruncationIsRefused) {
 }
 
 TEST(Ply, BadContentsAreRefused) {
-  expect_refused("a.ply", changed("1 1 0 2 0", "1 nan 0 2 0"), "not finite");
-  expect_refused("a.ply", changed("1 1 0 2 0", "1 oops 0 2 0"), "line 22: 'oops'");
-  expect_refused("a.ply", changed("1 1 0 2 0", "1 1 0 256 0"), "line 22: '256' is not a number of the announced type");
-  expect_refused("a.ply", changed("9 3 0 3 1", "9 3 0 4 1"), "vertices that do not exist");
-  expect_refused("a.ply", changed("9 3 0 3 1", "9 3 0 -3 1"), "line 25");
+  expect_refused("a.ply", changed_ply("1 1 0 2 0", "1 nan 0 2 0"), "not finite");
+  expect_refused("a.ply", changed_ply("1 1 0 2 0", "1 oops 0 2 0"), "line 22: 'oops'");
+  expect_refused("a.ply", changed_ply("1 1 0 2 0", "1 1 0 256 0"),
+                 "line 22: '256' is not a number of the announced type");
+  expect_refused("a.ply", changed_ply("9 3 0 3 1", "9 3 0 4 1"), "vertices that do not exist");
+  expect_refused("a.ply", changed_ply("9 3 0 3 1", "9 3 0 -3 1"), "line 25");
   expect_refused("a.ply", ascii_ply.substr(0, ascii_ply.find("3 1.0\r\n") + 1), "ends in element 0 of the 2 'face'");
   std::string pointless = ascii_ply;
   pointless.replace(pointless.find("element face 2"), 14, "element face 0");
   EXPECT_THROW(load_bytes("a.ply", pointless), InputError);
   try {
-    load_bytes("a.ply", changed("9 3 0 3 1", "9 3 0 4 1"));
+    load_bytes("a.ply", changed_ply("9 3 0 3 1", "9 3 0 4 1"));
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(error.elements(), std::vector<std::int64_t>{2});  // the third triangle
@@ -219,7 +221,7 @@ TEST(Ply, HeadersWithReturnsAloneMayPrecedeAnyByte) {
 }
 
 TEST(Ply, RepeatedCornersAreTakenOutAndNoted) {
-  const MeshFile file = load_bytes("a.ply", changed("9 4 0 1 2 3", "9 4 0 1 1 3"));
+  const MeshFile file = load_bytes("a.ply", changed_ply("9 4 0 1 2 3", "9 4 0 1 1 3"));
   EXPECT_EQ(file.dropped_triangles, std::vector<std::int64_t>{0});
   EXPECT_EQ(file.mesh.triangles, (std::vector<Triangle>{{0, 1, 3}, {0, 3, 1}}));
 }

@@ -7,9 +7,9 @@ namespace {
 
 using test::Bytes, test::expect_refused, test::load_bytes;
 
-const std::vector<Point> square{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.1F}};
+const std::vector<Point> uneven_square{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.1F}};
 
-/// A square as a polygon and as a strip beside lines and values of every kind, as version 4 writes it.
+/// A uneven_square as a polygon and as a strip beside lines and values of every kind, as version 4 writes it.
 const std::string text_4 =
     "# vtk DataFile Version 4.2\nvtk output\nASCII\nDATASET POLYDATA\nFIELD FieldData 1\nTimeValue 1 1 double\n0\n"
     "POINTS 4 float\n0 0 0 1 0 0\n1 1 0 0 1 0.1\n\nMETADATA\nINFORMATION 1\nNAME L2_NORM LOCATION vtkDataArray\nDATA 2 "
@@ -24,7 +24,7 @@ const std::string text_4 =
     "names 1 2 string\nfirst name\nsecond\n";
 
 void expect_square(const MeshFile& file) {
-  EXPECT_EQ(file.mesh.vertices, square);
+  EXPECT_EQ(file.mesh.vertices, uneven_square);
   EXPECT_EQ(file.mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {3, 2, 0}, {0, 2, 1}}));
   EXPECT_EQ(file.vertex_attributes.at("height").values, (std::vector<double>{0.1, 0.2, 0.3, 0.4}));
   EXPECT_EQ(file.vertex_attributes.at("Universal_ID a").values, (std::vector<double>{1, 2, 3, 4}));
@@ -37,7 +37,7 @@ void expect_square(const MeshFile& file) {
 /// The same, in bytes, as version 5 writes it.
 std::string binary_5() {
   Bytes b("# vtk DataFile Version 5.1\nvtk output\nBINARY\nDATASET POLYDATA\nPOINTS 4 float\n", std::endian::big);
-  for (const Point& p : square)
+  for (const Point& p : uneven_square)
     for (const double x : p) b.add(static_cast<float>(x));
   const auto add_cells = [&](const std::vector<std::int64_t>& offsets, const std::vector<std::int64_t>& corners) {
     b.add_text("OFFSETS vtktypeint64\n");
@@ -82,15 +82,15 @@ TEST(Vtk, EveryTruncationOfBytesIsRefused) {
   }
 }
 
-std::string changed(const std::string& what, const std::string& by) {
+std::string changed_vtk(const std::string& what, const std::string& by) {
   std::string text = text_4;
   return text.replace(text.find(what), what.size(), by);
 }
 
 TEST(Vtk, ValuesThatDoNotFitAreNoted) {
   const MeshFile file =
-      load_bytes("a.vtk", changed("height 1 4 double\n0.1 0.2 0.3 0.4", "height 1 3 double\n0.1 0.2 0.3"));
-  EXPECT_EQ(file.mesh.vertices, square);
+      load_bytes("a.vtk", changed_vtk("height 1 4 double\n0.1 0.2 0.3 0.4", "height 1 3 double\n0.1 0.2 0.3"));
+  EXPECT_EQ(file.mesh.vertices, uneven_square);
   EXPECT_FALSE(file.vertex_attributes.contains("height"));
   EXPECT_TRUE(test::notes_hold(file, "'height' has 3 values for 4 points"));
 }
@@ -106,15 +106,15 @@ TEST(Vtk, KeywordsMayBeWrittenInAnyCase) {
 }
 
 TEST(Vtk, WhatIsNotKnownAfterTheMeshIsPassedOver) {
-  const MeshFile file = load_bytes("a.vtk", changed("VECTORS", "ARROWS"));
-  EXPECT_EQ(file.mesh.vertices, square);
+  const MeshFile file = load_bytes("a.vtk", changed_vtk("VECTORS", "ARROWS"));
+  EXPECT_EQ(file.mesh.vertices, uneven_square);
   EXPECT_TRUE(test::notes_hold(file, "'ARROWS' is not known in a VTK file"));
 }
 
 TEST(Vtk, BitsNeedABytePerEight) {
   const std::string whole = binary_5();
   const std::string mesh = whole.substr(0, whole.find("\nPOINT_DATA"));
-  EXPECT_EQ(load_bytes("a.vtk", mesh + "\nFIELD F 1\nflag 1 17 bit\nabc").mesh.vertices, square);
+  EXPECT_EQ(load_bytes("a.vtk", mesh + "\nFIELD F 1\nflag 1 17 bit\nabc").mesh.vertices, uneven_square);
   for (const char* cut : {"\nFIELD F 1\nflag 1 1 bit\n", "\nFIELD F 1\nflag 1 1 bit", "\nFIELD F 1\nflag 1 17 bit\nab",
                           "\nFIELD F 1\nflag 4294967296 4294967296 bit\nab"})
     expect_refused("a.vtk", mesh + cut, "cut off");
@@ -122,25 +122,27 @@ TEST(Vtk, BitsNeedABytePerEight) {
 
 TEST(Vtk, NotesQuoteNothingThatATerminalObeys) {
   const MeshFile file =
-      load_bytes("a.vtk", changed("height 1 4 double\n0.1 0.2 0.3 0.4", "h%1b[2J 1 3 double\n0.1 0.2 0.3"));
+      load_bytes("a.vtk", changed_vtk("height 1 4 double\n0.1 0.2 0.3 0.4", "h%1b[2J 1 3 double\n0.1 0.2 0.3"));
   EXPECT_TRUE(test::notes_hold(file, "'h?[2J' has 3 values"));
 }
 
 TEST(Vtk, BadFilesAreRefused) {
-  expect_refused("a.vtk", changed("ASCII", "TEXT"), "'TEXT' is no encoding");
-  expect_refused("a.vtk", changed("DATASET POLYDATA", "DATASET STRUCTURED_POINTS"), "'STRUCTURED_POINTS', no surface");
-  expect_refused("a.vtk", changed("POINTS 4 float", "POINTS 4 number"), "'number' is no type of number");
-  expect_refused("a.vtk", changed("POINTS 4 float", "POINTS float"), "the number of points is missing");
-  expect_refused("a.vtk", changed("POINTS 4 float", "POINTS 4000000000000 float"), "no room for all");
-  expect_refused("a.vtk", changed("POINTS 4 float", "POINTS 9223372036854775807 float"), "no room for all");
-  expect_refused("a.vtk", changed("POLYGONS 1 5", "POLYGONS 1 4000000000"), "no room for all");
-  expect_refused("a.vtk", changed("POLYGONS 1 5\n4 0", "POLYGONS 1 5\n5 0"), "polygon 0 (counted from 0) lies outside");
-  expect_refused("a.vtk", changed("POLYGONS 1 5\n4 0", "POLYGONS 1 5\n-4 0"),
+  expect_refused("a.vtk", changed_vtk("ASCII", "TEXT"), "'TEXT' is no encoding");
+  expect_refused("a.vtk", changed_vtk("DATASET POLYDATA", "DATASET STRUCTURED_POINTS"),
+                 "'STRUCTURED_POINTS', no surface");
+  expect_refused("a.vtk", changed_vtk("POINTS 4 float", "POINTS 4 number"), "'number' is no type of number");
+  expect_refused("a.vtk", changed_vtk("POINTS 4 float", "POINTS float"), "the number of points is missing");
+  expect_refused("a.vtk", changed_vtk("POINTS 4 float", "POINTS 4000000000000 float"), "no room for all");
+  expect_refused("a.vtk", changed_vtk("POINTS 4 float", "POINTS 9223372036854775807 float"), "no room for all");
+  expect_refused("a.vtk", changed_vtk("POLYGONS 1 5", "POLYGONS 1 4000000000"), "no room for all");
+  expect_refused("a.vtk", changed_vtk("POLYGONS 1 5\n4 0", "POLYGONS 1 5\n5 0"),
                  "polygon 0 (counted from 0) lies outside");
-  expect_refused("a.vtk", changed("4 0 1 2 3", "4 0 1 2 4"), "polygon 0 (counted from 0) refers to a vertex");
-  expect_refused("a.vtk", changed("0 0 0 1 0 0", "0 0 0 1 0 x"), "'x' is not a number");
-  expect_refused("a.vtk", changed("0 0 0 1 0 0", "0 0 nan 1 0 0"), "not finite");
-  expect_refused("a.vtk", changed("POINTS 4", "PLACES 4"), "'PLACES' is not known in a VTK file");
+  expect_refused("a.vtk", changed_vtk("POLYGONS 1 5\n4 0", "POLYGONS 1 5\n-4 0"),
+                 "polygon 0 (counted from 0) lies outside");
+  expect_refused("a.vtk", changed_vtk("4 0 1 2 3", "4 0 1 2 4"), "polygon 0 (counted from 0) refers to a vertex");
+  expect_refused("a.vtk", changed_vtk("0 0 0 1 0 0", "0 0 0 1 0 x"), "'x' is not a number");
+  expect_refused("a.vtk", changed_vtk("0 0 0 1 0 0", "0 0 nan 1 0 0"), "not finite");
+  expect_refused("a.vtk", changed_vtk("POINTS 4", "PLACES 4"), "'PLACES' is not known in a VTK file");
   expect_refused("a.vtk", text_4.substr(0, text_4.find("0 1 0.1")), "cut off");
   expect_refused("a.vtk", "# vtk DataFile Version 3.0\n", "no encoding");
 }

@@ -163,7 +163,7 @@ TEST(Vtp, TruncatedFilesAreRefused) {
   }
 }
 
-std::string changed(const std::string& what, const std::string& by, Layout layout = {}) {
+std::string changed_vtp(const std::string& what, const std::string& by, Layout layout = {}) {
   std::string text = VtpWriter(layout).write();
   return text.replace(text.find(what), what.size(), by);
 }
@@ -186,34 +186,37 @@ TEST(Vtp, DamagedDataAreRefused) {
   text = VtpWriter(raw).write();
   text.replace(text.find(" _") + 2, 4, "\xff\xff\xff\xff");
   expect_refused("a.vtp", text, "is cut off");
-  expect_refused("a.vtp", changed("offset=\"0\"", "offset=\"99999999999\"", raw), "begins after the end");
+  expect_refused("a.vtp", changed_vtp("offset=\"0\"", "offset=\"99999999999\"", raw), "begins after the end");
 }
 
 TEST(Vtp, BadContentsAreRefused) {
   expect_refused("a.vtp", "", "empty");
   expect_refused("a.vtp", "<a><b></a>", "line 1: the file is no proper XML");
-  expect_refused("a.vtp", changed("type=\"PolyData\"", "type=\"ImageData\""), "PolyData");
-  expect_refused("a.vtp", changed("byte_order", "compressor=\"vtkLZMADataCompressor\" byte_order"),
+  expect_refused("a.vtp", changed_vtp("type=\"PolyData\"", "type=\"ImageData\""), "PolyData");
+  expect_refused("a.vtp", changed_vtp("byte_order", "compressor=\"vtkLZMADataCompressor\" byte_order"),
                  "vtkLZMADataCompressor");
-  expect_refused("a.vtp", changed("NumberOfPoints=\"4\"", "NumberOfPoints=\"5\""), "announces 5 points and holds 4");
-  expect_refused("a.vtp", changed("0 1 2 3 2 1 0", "0 1 2 4 2 1 0"), "polygon 0 (counted from 0) refers to vertex 4");
-  expect_refused("a.vtp", changed("0 1 2 3 2 1 0", "0 1 2 3 2 -1 0"), "polygon 1 (counted from 0) refers to vertex -1");
-  expect_refused("a.vtp", changed("4 7", "4 8"), "polygon 1 (counted from 0) lies outside");
-  expect_refused("a.vtp", changed("4 7", "4 2"), "polygon 1 (counted from 0) lies outside");
-  expect_refused("a.vtp", changed("4 7", ""), "no triangles");
-  expect_refused("a.vtp", changed("0 0 0 1 0 0", "0 0 nan 1 0 0"), "not finite");
-  expect_refused("a.vtp", changed("0 0 0 1 0 0", "0 0 no 1 0 0"), "'Points' holds 'no'");
+  expect_refused("a.vtp", changed_vtp("NumberOfPoints=\"4\"", "NumberOfPoints=\"5\""),
+                 "announces 5 points and holds 4");
+  expect_refused("a.vtp", changed_vtp("0 1 2 3 2 1 0", "0 1 2 4 2 1 0"),
+                 "polygon 0 (counted from 0) refers to vertex 4");
+  expect_refused("a.vtp", changed_vtp("0 1 2 3 2 1 0", "0 1 2 3 2 -1 0"),
+                 "polygon 1 (counted from 0) refers to vertex -1");
+  expect_refused("a.vtp", changed_vtp("4 7", "4 8"), "polygon 1 (counted from 0) lies outside");
+  expect_refused("a.vtp", changed_vtp("4 7", "4 2"), "polygon 1 (counted from 0) lies outside");
+  expect_refused("a.vtp", changed_vtp("4 7", ""), "no triangles");
+  expect_refused("a.vtp", changed_vtp("0 0 0 1 0 0", "0 0 nan 1 0 0"), "not finite");
+  expect_refused("a.vtp", changed_vtp("0 0 0 1 0 0", "0 0 no 1 0 0"), "'Points' holds 'no'");
   expect_refused("a.vtp",
-                 changed("type=\"Float32\" NumberOfComponents=\"3\" Name=\"Points\"",
-                         "type=\"Bit\" NumberOfComponents=\"3\" Name=\"Points\""),
+                 changed_vtp("type=\"Float32\" NumberOfComponents=\"3\" Name=\"Points\"",
+                             "type=\"Bit\" NumberOfComponents=\"3\" Name=\"Points\""),
                  "'Points' is of type 'Bit'");
 }
 
 TEST(Vtp, PackingIsKnownByTheBlocksThemselves) {
   for (const VtkCompression compression : {VtkCompression::zlib, VtkCompression::lz4}) {
     const bool zlib = compression == VtkCompression::zlib;
-    const MeshFile file = load_bytes("a.vtp", changed(zlib ? "vtkZLib" : "vtkLZ4", zlib ? "vtkLZ4" : "vtkZLib",
-                                                      {Storage::appended_raw, compression}));
+    const MeshFile file = load_bytes("a.vtp", changed_vtp(zlib ? "vtkZLib" : "vtkLZ4", zlib ? "vtkLZ4" : "vtkZLib",
+                                                          {Storage::appended_raw, compression}));
     EXPECT_EQ(file.mesh.triangles.size(), 3U);
   }
 }
@@ -233,7 +236,7 @@ TEST(Vtp, ValuesThatDoNotFitAreNoted) {
            {"0.1 0.2 0.3 0.4", "0.1 0.2 0.3 0.4 0.5", "'height' has 5 values for 4 points"},
            {"0.1 0.2 0.3 0.4", "0.1 0.2 0.3 many", "'height' holds 'many'"},
            {"type=\"Float64\" Name=\"height\"", "type=\"Bit\" Name=\"height\"", "'height' is of type 'Bit'"}}) {
-    const MeshFile file = load_bytes("a.vtp", changed(what, by));
+    const MeshFile file = load_bytes("a.vtp", changed_vtp(what, by));
     EXPECT_TRUE(test::same_bits(file.mesh, good.mesh));
     EXPECT_TRUE(file.vertex_attributes.empty());
     EXPECT_TRUE(test::notes_hold(file, note)) << note;

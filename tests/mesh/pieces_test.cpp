@@ -13,8 +13,6 @@
 namespace rhizodont {
 namespace {
 
-TriangleMesh crown() { return test::dome(3, 4); }
-
 std::string said_of(const TriangleMesh& mesh) { return describe_pieces(mesh, sort_pieces(mesh)); }
 
 /// Adds a triangle of its own.
@@ -25,18 +23,18 @@ void add_triangle(TriangleMesh& mesh, const Point& at, double size) {
 }
 
 TEST(Pieces, OneIsNothingToSpeakOf) {
-  EXPECT_EQ(said_of(crown()), "");
-  EXPECT_TRUE(drop_specks(crown()).steps.empty());
+  EXPECT_EQ(said_of(test::dome(3, 4)), "");
+  EXPECT_TRUE(drop_specks(test::dome(3, 4)).steps.empty());
   EXPECT_TRUE(sort_pieces({}).kinds.empty());
 }
 
 TEST(Pieces, SpecksAreSmallOrASingleTriangleWhateverItsArea) {
-  TriangleMesh mesh = test::together(crown(), test::dome(0, 0.3), Point(6, 0, 0));
+  TriangleMesh mesh = test::together(test::dome(3, 4), test::dome(0, 0.3), Point(6, 0, 0));
   add_triangle(mesh, Point(0, 9, 0), 12);
   const RepairedMesh rest = drop_specks(mesh);
-  EXPECT_EQ(rest.mesh.triangles, crown().triangles);
+  EXPECT_EQ(rest.mesh.triangles, test::dome(3, 4).triangles);
   ASSERT_EQ(rest.steps.size(), 1U);
-  EXPECT_EQ(rest.steps[0].vertices.size(), mesh.vertices.size() - crown().vertices.size());
+  EXPECT_EQ(rest.steps[0].vertices.size(), mesh.vertices.size() - test::dome(3, 4).vertices.size());
   EXPECT_TRUE(rest.steps[0].triangles.empty());
 }
 
@@ -59,19 +57,19 @@ TEST(Pieces, APatchBehindASeamIsNoSpeckHoweverSmall) {
 }
 
 TEST(Pieces, ATriangleHangingOnACornerIsASpeckAndTheCornerStays) {
-  TriangleMesh mesh = crown();
+  TriangleMesh mesh = test::dome(3, 4);
   mesh.vertices.emplace_back(5, 5, 0);
   mesh.vertices.emplace_back(6, 5, 0);
   const auto last = static_cast<std::int32_t>(mesh.vertices.size()) - 1;
   mesh.triangles.push_back({0, last - 1, last});
   const RepairedMesh rest = drop_specks(mesh);
-  EXPECT_EQ(rest.mesh.vertices, crown().vertices);
+  EXPECT_EQ(rest.mesh.vertices, test::dome(3, 4).vertices);
   ASSERT_EQ(rest.steps.size(), 1U);
   EXPECT_EQ(rest.steps[0].vertices, (std::vector<int>{last - 1, last}));
 }
 
 TEST(Pieces, ASpeckBetweenVerticesOfTheCrownIsListedAsATriangle) {
-  TriangleMesh mesh = crown();
+  TriangleMesh mesh = test::dome(3, 4);
   mesh.vertices.push_back(Point(mesh.vertices[40]));  // the third corner has the place of a crown's vertex
   mesh.triangles.push_back({0, 20, static_cast<std::int32_t>(mesh.vertices.size()) - 1});
   const RepairedMesh rest = drop_specks(mesh);
@@ -80,14 +78,14 @@ TEST(Pieces, ASpeckBetweenVerticesOfTheCrownIsListedAsATriangle) {
 }
 
 TEST(Pieces, ACrownInShredsHasNoSpecks) {
-  TriangleMesh mesh = crown();
+  TriangleMesh mesh = test::dome(3, 4);
   for (int i = 0; i < 200; ++i) add_triangle(mesh, Point(i, 9, 0), 0.2);
   EXPECT_TRUE(drop_specks(mesh).steps.empty());
   EXPECT_NE(said_of(mesh).find("200 smaller pieces"), std::string::npos);
 }
 
 TEST(Pieces, OfLikeSizeAreCrownsOrPartsOfOne) {
-  TriangleMesh mesh = test::together(crown(), crown(), Point(9, 0, 0));
+  TriangleMesh mesh = test::together(test::dome(3, 4), test::dome(3, 4), Point(9, 0, 0));
   EXPECT_NE(said_of(mesh).find("2 crowns"), std::string::npos);
   for (int i = 2; i < 14; ++i) mesh = test::together(mesh, test::dome(3, 3), Point(9 * i, 0, 0));
   EXPECT_NE(said_of(mesh).find("14 crowns"), std::string::npos);
@@ -105,10 +103,10 @@ TEST(Pieces, OfLikeSizeAreCrownsOrPartsOfOne) {
 }
 
 TEST(Pieces, MeshesThatCannotBeLookedAtComeBackAsTheyAre) {
-  TriangleMesh mesh = crown();
+  TriangleMesh mesh = test::dome(3, 4);
   mesh.triangles.push_back({0, 1, 5000});
   EXPECT_EQ(drop_specks(mesh).mesh.triangles, mesh.triangles);
-  mesh = test::together(crown(), test::dome(0, 0.3), Point(6, 0, 0));
+  mesh = test::together(test::dome(3, 4), test::dome(0, 0.3), Point(6, 0, 0));
   mesh.vertices[0].x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(drop_specks(mesh).mesh.triangles, mesh.triangles);
 }

@@ -47,7 +47,7 @@ TEST(DiffusionLayers, GradientIsTheSumOfItsEntries) {
   EXPECT_EQ(networks::surface_gradient(two_vertices(), values), expected);
 }
 
-const SurfaceNetwork& shipped() {
+const SurfaceNetwork& shipped_surface_network() {
   static const SurfaceNetwork network = SurfaceNetwork::load(testing::model_file("skirt.safetensors"));
   return network;
 }
@@ -56,7 +56,7 @@ TEST(SurfaceNetwork, SameBitsForAnyNumberOfThreads) {
   const SurfaceSample surface = testing::made_surface(1700, 48);
   const auto with_threads = [&](std::size_t count) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, count);
-    return shipped().confidence(surface);
+    return shipped_surface_network().confidence(surface);
   };
   const std::vector<float> one = with_threads(1);
   ASSERT_EQ(one.size(), 1700U);
@@ -65,9 +65,9 @@ TEST(SurfaceNetwork, SameBitsForAnyNumberOfThreads) {
 
 TEST(SurfaceNetwork, RefusesSurfacesThatDoNotFit) {
   SurfaceSample bad = testing::made_surface(40, 8);
-  EXPECT_NO_THROW(shipped().confidence(bad));
+  EXPECT_NO_THROW(shipped_surface_network().confidence(bad));
   bad.mass.pop_back();
-  EXPECT_THROW(shipped().confidence(bad), InputError);
+  EXPECT_THROW(shipped_surface_network().confidence(bad), InputError);
 }
 
 TEST(SurfaceNetwork, RefusesOtherWeights) {

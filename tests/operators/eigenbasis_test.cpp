@@ -16,7 +16,7 @@ namespace {
 using test::bowl;
 using test::rectangle;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 TEST(Eigenbasis, SphereHasItsHarmonicsWithTheirMultiplicities) {
   const SurfaceOperators operators = surface_operators(test::sphere(5, 3.0));  // 4098 vertices

@@ -17,7 +17,7 @@ namespace {
 using test::bowl;
 using test::rectangle;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 double largest_difference(const Eigen::SparseMatrix<double>& a, const Eigen::SparseMatrix<double>& b) {
   return Eigen::MatrixXd(a - b).cwiseAbs().maxCoeff();

@@ -33,11 +33,10 @@ namespace {
 
 using test::for_tooth;
 using test::models;
+using test::sample;
 using test::source_folder;
 
 const std::filesystem::path shared_data = source_folder / "../shared/data";
-
-TriangleMesh sample(const std::string& name) { return load_mesh(source_folder / "samples" / name).mesh; }
 
 /// Vertex i of the tooth is vertex kept_vertices[i] of the crown, bit for bit, and so are the first triangles.
 void expect_crown_first(const TriangleMesh& crown, const CompletedTooth& tooth) {

@@ -23,12 +23,11 @@ namespace {
 
 using test::for_tooth;
 using test::models;
+using test::sample;
 using test::source_folder;
 
 const std::vector<std::pair<const char*, int>> samples{
     {"crown_11.stl", 11}, {"crown_23.ply", 23}, {"crown_34.ply", 34}, {"crown_36.stl", 36}, {"crown_16.ply", 16}};
-
-TriangleMesh sample(const std::string& name) { return load_mesh(source_folder / "samples" / name).mesh; }
 
 /// Stood on its base: growth axis +z.
 TriangleMesh upright(TriangleMesh crown) {

@@ -3,8 +3,10 @@
 #pragma once
 
 #include "rhizodont/complete.hpp"
+#include "rhizodont/io.hpp"
 
 #include <filesystem>
+#include <string>
 
 namespace rhizodont::test {
 
@@ -15,6 +17,9 @@ inline const CompletionModels& models() {
   static const CompletionModels loaded = CompletionModels::load(source_folder / "models");
   return loaded;
 }
+
+/// A crown of the folder samples/.
+inline TriangleMesh sample(const std::string& name) { return load_mesh(source_folder / "samples" / name).mesh; }
 
 /// Product defaults for a tooth whose number is known.
 inline CompleteOptions for_tooth(int fdi) {
