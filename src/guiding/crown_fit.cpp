@@ -262,11 +262,13 @@ int refine(TriangleMesh& surface, const TriangleMesh& crown, const CrownPlaces& 
     splittable.start_round();
     std::vector<int> added;
     for (const int t : split) splittable.split(t, added);
-    const std::vector<Eigen::Vector3d> normals = vertex_normals(surface);
+    const std::vector<Eigen::Vector3d> normals = vertex_normals_at(surface, added);
     std::vector<Eigen::Vector3d> moves(surface.vertices.size(), Eigen::Vector3d::Zero());
-    for (const int v : added)
-      if (const auto place = drawn_to.place_for(surface.vertices[at(v)], normals[at(v)], border_reach))
-        moves[at(v)] = *place - surface.vertices[at(v)];
+    tbb::parallel_for(std::size_t{0}, added.size(), [&](std::size_t k) {
+      const auto v = at(added[k]);
+      if (const auto place = drawn_to.place_for(surface.vertices[v], normals[k], border_reach))
+        moves[v] = *place - surface.vertices[v];
+    });
     move_vertices(surface, std::move(moves));
   }
   return static_cast<int>(surface.vertices.size() - first_added);

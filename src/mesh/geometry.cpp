@@ -88,17 +88,42 @@ double surface_area(const TriangleMesh& mesh) {
   return sum;
 }
 
-std::vector<Eigen::Vector3d> vertex_normals(const TriangleMesh& mesh) {
-  std::vector<Eigen::Vector3d> normals(mesh.vertices.size(), Eigen::Vector3d::Zero());
+namespace {
+
+/// Adds up the triangles' normals at their corners v, weighted, in sums[place(v)] where that is not negative.
+template <class Place>
+void add_corner_normals(const TriangleMesh& mesh, const Place& place, std::vector<Eigen::Vector3d>& sums) {
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& c = mesh.triangles[t];
+    if (place(c[0]) < 0 && place(c[1]) < 0 && place(c[2]) < 0) continue;
     const Eigen::Vector3d normal = triangle_normal(mesh, t);
     const std::array<double, 3> angles = triangle_angles(mesh, t);
-    for (std::size_t i = 0; i < 3; ++i) normals[static_cast<std::size_t>(mesh.triangles[t][i])] += angles[i] * normal;
+    for (std::size_t i = 0; i < 3; ++i)
+      if (place(c[i]) >= 0) sums[static_cast<std::size_t>(place(c[i]))] += angles[i] * normal;
   }
-  for (Eigen::Vector3d& normal : normals) {
-    const double length = normal.norm();
-    if (length > 0) normal /= length;
+  for (Eigen::Vector3d& sum : sums) {
+    const double length = sum.norm();
+    if (length > 0) sum /= length;
   }
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> vertex_normals(const TriangleMesh& mesh) {
+  std::vector<Eigen::Vector3d> normals(mesh.vertices.size(), Eigen::Vector3d::Zero());
+  add_corner_normals(
+      mesh, [](int v) { return v; }, normals);
+  return normals;
+}
+
+std::vector<Eigen::Vector3d> vertex_normals_at(const TriangleMesh& mesh, const std::vector<int>& vertices) {
+  std::vector<int> place(mesh.vertices.size(), -1);
+  for (std::size_t k = 0; k < vertices.size(); ++k) place[static_cast<std::size_t>(vertices[k])] = static_cast<int>(k);
+  std::vector<Eigen::Vector3d> normals(vertices.size(), Eigen::Vector3d::Zero());
+  add_corner_normals(
+      mesh, [&](int v) { return place[static_cast<std::size_t>(v)]; }, normals);
+  for (std::size_t k = 0; k < vertices.size(); ++k)
+    normals[k] = normals[static_cast<std::size_t>(place[static_cast<std::size_t>(vertices[k])])];
   return normals;
 }
 

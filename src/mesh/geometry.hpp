@@ -43,6 +43,9 @@ double surface_area(const TriangleMesh& mesh);
 /// The zero vector where a vertex has no triangle with area.
 std::vector<Eigen::Vector3d> vertex_normals(const TriangleMesh& mesh);
 
+/// Those at some vertices alone, in their order: the very numbers that `vertex_normals` gives, for less.
+std::vector<Eigen::Vector3d> vertex_normals_at(const TriangleMesh& mesh, const std::vector<int>& vertices);
+
 /// Empty box for no points.
 Eigen::AlignedBox3d bounding_box(const std::vector<Point>& points);
 

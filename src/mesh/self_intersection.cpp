@@ -1,14 +1,13 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exact self-intersection test of a triangle soup: candidate pairs from box intersection (A. Zomorodian, H.
-// Edelsbrunner, "Fast software for box intersections", SoCG 2000, as in CGAL), each decided with CGAL's exact
-// predicates.
+// Exact self-intersection test of a triangle soup: candidate pairs are those whose boxes meet, each decided with CGAL's
+// exact predicates.
 #include "mesh/self_intersection.hpp"
 
+#include "mesh/box_tree.hpp"
 #include "mesh/mesh_checks.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/box_intersection_d.h>
 #include <CGAL/intersections.h>
 
 #include <tbb/blocked_range.h>
@@ -30,6 +29,7 @@ using Pair = std::pair<int, int>;
 struct Soup {
   std::vector<Point3> points;
   const std::vector<Triangle>& triangles;
+  const std::vector<Point>& coordinates;  // of the same points
 
   const Point3& point(int v) const { return points[static_cast<std::size_t>(v)]; }
   std::array<Point3, 3> corners(const Triangle& t) const { return {point(t[0]), point(t[1]), point(t[2])}; }
@@ -102,7 +102,7 @@ bool triangles_meet(const Soup& soup, const Triangle& a, const Triangle& b) {
 /// Which side of the line from p to q the point r is on, seen along an axis: 1 or -1 where rounding cannot change it,
 /// else 0. Bound of the error: J. R. Shewchuk, "Adaptive precision floating-point arithmetic and fast robust geometric
 /// predicates", 1997.
-int sure_side(const Point3& p, const Point3& q, const Point3& r, int first, int second) {
+inline int sure_side(const Point& p, const Point& q, const Point& r, int first, int second) {
   constexpr double relative = 4e-16, underflow = 1e-290;
   const double left = (q[first] - p[first]) * (r[second] - p[second]);
   const double right = (q[second] - p[second]) * (r[first] - p[first]);
@@ -114,20 +114,17 @@ int sure_side(const Point3& p, const Point3& q, const Point3& r, int first, int 
 /// the side that both have: then they meet nowhere else. Spares most pairs the exact test, which takes long where
 /// triangles lie in one plane.
 bool is_apart_along_a_side(const Soup& soup, const Triangle& a, const Triangle& b) {
+  const auto at = [&](int v) -> const Point& { return soup.coordinates[static_cast<std::size_t>(v)]; };
   for (int axis = 0; axis < 3; ++axis)
     for (std::size_t i = 0; i < 3; ++i) {
       const int from = a[i], to = a[(i + 1) % 3];
-      const auto side = [&](int v) {
-        return sure_side(soup.point(from), soup.point(to), soup.point(v), axis, (axis + 1) % 3);
-      };
+      const auto side = [&](int v) { return sure_side(at(from), at(to), at(v), axis, (axis + 1) % 3); };
       const int own = side(a[(i + 2) % 3]);
       if (own != 0 && std::all_of(b.begin(), b.end(), [&](int v) { return v == from || v == to || side(v) == -own; }))
         return true;
     }
   return false;
 }
-
-using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, int>;
 
 /// Triangles by the vertex that very many of them have in common, as the fan of a large polygon has; `hubs` are those
 /// vertices, `at_hub` the triangles of each, `others` all the rest.
@@ -165,19 +162,23 @@ Crowds find_crowds(const Soup& soup) {
   return crowds;
 }
 
-std::vector<Box> boxes_of(const Soup& soup, const std::vector<int>& triangles) {
-  std::vector<Box> boxes;
-  boxes.reserve(triangles.size());
-  for (const int t : triangles) {
-    const auto p = soup.corners(soup.triangles[static_cast<std::size_t>(t)]);
-    boxes.emplace_back(p[0].bbox() + p[1].bbox() + p[2].bbox(), t);
+std::vector<ClosedBox> boxes_of(const Soup& soup, const std::vector<int>& triangles) {
+  std::vector<ClosedBox> boxes(triangles.size());
+  for (std::size_t k = 0; k < triangles.size(); ++k) {
+    const Triangle& t = soup.triangles[static_cast<std::size_t>(triangles[k])];
+    const Point3 &a = soup.point(t[0]), &b = soup.point(t[1]), &c = soup.point(t[2]);
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<std::size_t>(axis);
+      boxes[k].low[i] = std::min({a[axis], b[axis], c[axis]});
+      boxes[k].high[i] = std::max({a[axis], b[axis], c[axis]});
+    }
   }
   return boxes;
 }
 
 /// Around the directions in which a triangle lies as seen from one of its corners: the arc between two points of the
 /// unit sphere. Triangles that meet anywhere but at that corner lie in a common direction.
-Box box_of_directions(const Soup& soup, int triangle, int corner) {
+ClosedBox box_of_directions(const Soup& soup, int triangle, int corner) {
   constexpr double rounding = 1e-12;
   std::array<Eigen::Vector3d, 2> ends{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   std::size_t count = 0;
@@ -190,29 +191,36 @@ Box box_of_directions(const Soup& soup, int triangle, int corner) {
   const double bulge = 1 - 0.5 * (ends[0] + ends[1]).norm() + rounding;  // of the arc beyond its chord
   const Eigen::Vector3d low = ends[0].cwiseMin(ends[1]).array() - bulge,
                         high = ends[0].cwiseMax(ends[1]).array() + bulge;
-  return {CGAL::Bbox_3(low.x(), low.y(), low.z(), high.x(), high.y(), high.z()), triangle};
+  return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
 }
 
 /// Pairs that may meet: their boxes do, and where they have a hub in common, the directions in which they lie from it;
 /// and no side of one keeps them apart.
 std::vector<Pair> candidate_pairs(const Soup& soup) {
   std::vector<Pair> pairs;
-  const auto note = [&](const Box& a, const Box& b) {
-    const Triangle& s = soup.triangles[static_cast<std::size_t>(a.info())];
-    const Triangle& t = soup.triangles[static_cast<std::size_t>(b.info())];
-    if (!is_apart_along_a_side(soup, s, t) && !is_apart_along_a_side(soup, t, s))
-      pairs.push_back(std::minmax(a.info(), b.info()));
+  // `found`: pairs by their places in lists of triangles.
+  const auto note = [&](const std::vector<Pair>& found, const std::vector<int>& first, const std::vector<int>& second) {
+    for (const auto& [i, j] : found)
+      pairs.push_back(std::minmax(first[static_cast<std::size_t>(i)], second[static_cast<std::size_t>(j)]));
+  };
+  const auto may_meet = [&](const std::vector<int>& first, const std::vector<int>& second) {
+    return [&](int i, int j) {
+      const Triangle& s = soup.triangles[static_cast<std::size_t>(first[static_cast<std::size_t>(i)])];
+      const Triangle& t = soup.triangles[static_cast<std::size_t>(second[static_cast<std::size_t>(j)])];
+      return !is_apart_along_a_side(soup, s, t) && !is_apart_along_a_side(soup, t, s);
+    };
   };
   const Crowds crowds = find_crowds(soup);
-  std::vector<Box> done = boxes_of(soup, crowds.others);
-  CGAL::box_self_intersection_d(done.begin(), done.end(), note);
+  std::vector<int> done = crowds.others;
+  note(BoxTree(boxes_of(soup, done)).meeting_pairs(may_meet(done, done)), done, done);
   for (std::size_t k = 0; k < crowds.hubs.size(); ++k) {
-    std::vector<Box> boxes = boxes_of(soup, crowds.at_hub[k]);
-    CGAL::box_intersection_d(boxes.begin(), boxes.end(), done.begin(), done.end(), note);
-    done.insert(done.end(), boxes.begin(), boxes.end());
-    std::vector<Box> directions;
-    for (const int t : crowds.at_hub[k]) directions.push_back(box_of_directions(soup, t, crowds.hubs[k]));
-    CGAL::box_self_intersection_d(directions.begin(), directions.end(), note);
+    const std::vector<int>& crowd = crowds.at_hub[k];
+    note(BoxTree(boxes_of(soup, crowd)).meeting_pairs(BoxTree(boxes_of(soup, done)), may_meet(crowd, done)), crowd,
+         done);
+    done.insert(done.end(), crowd.begin(), crowd.end());
+    std::vector<ClosedBox> directions;
+    for (const int t : crowd) directions.push_back(box_of_directions(soup, t, crowds.hubs[k]));
+    note(BoxTree(directions).meeting_pairs(may_meet(crowd, crowd)), crowd, crowd);
   }
   std::sort(pairs.begin(), pairs.end());
   return pairs;
@@ -223,7 +231,7 @@ std::vector<Pair> candidate_pairs(const Soup& soup) {
 std::vector<Pair> self_intersecting_triangles(const TriangleMesh& mesh) {
   require_valid_indices(mesh);
   require_finite(mesh.vertices);
-  Soup soup{{}, mesh.triangles};
+  Soup soup{{}, mesh.triangles, mesh.vertices};
   for (const Point& p : mesh.vertices) soup.points.emplace_back(p.x(), p.y(), p.z());
   std::vector<Pair> pairs = candidate_pairs(soup);
   std::vector<char> meet(pairs.size(), 0);

@@ -20,17 +20,21 @@
 #include "rhizodont/error.hpp"
 
 #include <fmt/format.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <vector>
 
 namespace rhizodont {
 namespace {
 
 void note_guiding_distance(const TriangleMesh& crown, const TriangleMesh& surface, JoiningRecord& joining) {
   const ClosestPointIndex index(surface);
+  std::vector<double> distances(crown.vertices.size());
+  tbb::parallel_for(std::size_t{0}, distances.size(),
+                    [&](std::size_t v) { distances[v] = index.closest(crown.vertices[v]).distance; });
   double sum = 0;
-  for (const Point& p : crown.vertices) {
-    const double d = index.closest(p).distance;
+  for (const double d : distances) {
     sum += d;
     joining.guiding_distance_max_mm = std::max(joining.guiding_distance_max_mm, d);
   }

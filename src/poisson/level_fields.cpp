@@ -129,35 +129,51 @@ BlockSamples<Scalar>::BlockSamples(const SplineLevel& level, const std::vector<S
   }
 }
 
-template <class Scalar>
-void add_screening(const SplineLevel& level, std::span<const typename BlockSamples<Scalar>::Entry> samples,
-                   const Scalar* patch, Scalar* scratch, Scalar* product) {
-  if (samples.empty()) return;
-  const int wide = patch_width(level), count = level.degree + 1, halo = level.degree;
+namespace {
+
+/// `add_screening` with all loops of known length.
+template <int degree, class Scalar>
+void add_screening_of_degree(std::span<const typename BlockSamples<Scalar>::Entry> samples, const Scalar* patch,
+                             Scalar* scratch, Scalar* product) {
+  constexpr int wide = side + 2 * degree, count = degree + 1;
   std::fill_n(scratch, wide * wide * wide, Scalar(0));
   for (const auto& entry : samples) {
-    const auto& v = entry.values;
+    const std::array<Scalar, 3>&vx = entry.values[0], &vy = entry.values[1], &vz = entry.values[2];
+    const Scalar* from = patch + entry.first;
     Scalar value = 0;
-    for (int k = 0; k < count; ++k)
-      for (int j = 0; j < count; ++j) {
-        const Scalar* line = patch + entry.first + (k * wide + j) * wide;
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t j = 0; j < count; ++j) {
+        const Scalar* line = from + (k * wide + j) * wide;
         Scalar sum = 0;
-        for (int i = 0; i < count; ++i) sum += v[0][static_cast<std::size_t>(i)] * line[i];
-        value += v[2][static_cast<std::size_t>(k)] * v[1][static_cast<std::size_t>(j)] * sum;
+        for (std::size_t i = 0; i < count; ++i) sum += vx[i] * line[i];
+        value += vz[k] * vy[j] * sum;
       }
     value *= entry.weight;
-    for (int k = 0; k < count; ++k)
-      for (int j = 0; j < count; ++j) {
-        Scalar* line = scratch + entry.first + (k * wide + j) * wide;
-        const Scalar factor = value * v[2][static_cast<std::size_t>(k)] * v[1][static_cast<std::size_t>(j)];
-        for (int i = 0; i < count; ++i) line[i] += factor * v[0][static_cast<std::size_t>(i)];
+    Scalar* to = scratch + entry.first;
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t j = 0; j < count; ++j) {
+        Scalar* line = to + (k * wide + j) * wide;
+        const Scalar factor = value * vz[k] * vy[j];
+        for (std::size_t i = 0; i < count; ++i) line[i] += factor * vx[i];
       }
   }
   for (int z = 0; z < side; ++z)
     for (int y = 0; y < side; ++y) {
-      const Scalar* line = scratch + ((z + halo) * wide + y + halo) * wide + halo;
+      const Scalar* line = scratch + ((z + degree) * wide + y + degree) * wide + degree;
       for (int x = 0; x < side; ++x) product[(z * side + y) * side + x] += line[x];
     }
+}
+
+}  // namespace
+
+template <class Scalar>
+void add_screening(const SplineLevel& level, std::span<const typename BlockSamples<Scalar>::Entry> samples,
+                   const Scalar* patch, Scalar* scratch, Scalar* product) {
+  if (samples.empty()) return;
+  if (level.degree == 2)
+    add_screening_of_degree<2, Scalar>(samples, patch, scratch, product);
+  else
+    add_screening_of_degree<1, Scalar>(samples, patch, scratch, product);
 }
 
 std::vector<ScreeningSample> merge_samples(const SplineLevel& level, const std::vector<ScreeningSample>& samples) {

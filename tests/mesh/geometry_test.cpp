@@ -65,6 +65,16 @@ TEST(Geometry, VertexNormalsOfACubePointAlongTheDiagonals) {
     EXPECT_LT((normals[v] - (cube().vertices[v] - Point(0.5, 0.5, 0.5)).normalized()).norm(), 1e-15);
 }
 
+TEST(Geometry, NormalsAtSomeVerticesAreTheVerySame) {
+  const TriangleMesh mesh = cube();
+  const auto all = vertex_normals(mesh);
+  const std::vector<int> some{6, 1, 3, 1};
+  const auto normals = vertex_normals_at(mesh, some);
+  ASSERT_EQ(normals.size(), some.size());
+  for (std::size_t k = 0; k < some.size(); ++k) EXPECT_EQ(normals[k], all[static_cast<std::size_t>(some[k])]);
+  EXPECT_TRUE(vertex_normals_at(mesh, {}).empty());
+}
+
 TEST(Geometry, AnglesSumToPiEvenForNeedles) {
   const TriangleMesh needle = one_triangle({0, 0, 0}, {1, 0, 0}, {0.5, 1e-9, 0});
   const auto angles = triangle_angles(needle, 0);
