@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cstdlib>
 #include <fstream>
 
 namespace rhizodont {
@@ -33,6 +35,15 @@ class CommandLine : public test::Program {
     ASSERT_EQ(outcome.code, 0) << arguments << "\n" << outcome.error;
   }
 };
+
+TEST_F(CommandLine, FewLibrariesAreLoadedAndNoneForTraining) {
+  const fs::path list = folder.path() / "libraries";
+  ASSERT_EQ(std::system(("ldd '" RHIZODONT_PROGRAM "' > '" + list.string() + "'").c_str()), 0);
+  const std::string libraries = read_all(list);
+  EXPECT_LT(std::count(libraries.begin(), libraries.end(), '\n'), 40);
+  EXPECT_EQ(libraries.find("torch"), std::string::npos) << libraries;
+  EXPECT_EQ(libraries.find("blas"), std::string::npos) << libraries;
+}
 
 TEST_F(CommandLine, WhatWasMeantIsSuggested) {
   expect_error("complet crown_34.ply", 2, "no command 'complet': did you mean complete?");

@@ -249,6 +249,32 @@ TEST(CompleteTooth, OptionsAreCheckedBeforeTheFirstStage) {
   EXPECT_THROW(complete_candidates(crown, models(), 2, steered, no_stage), UsageError);
 }
 
+TEST(CompleteTooth, AnExceptionFromTheProgressCallbackCancelsItAtEveryStage) {
+  struct Cancelled {
+    std::string at;
+  };
+  const TriangleMesh crown = sample("crown_34.ply");
+  CompleteOptions options = for_tooth(34);
+  options.e = 2;
+  std::vector<std::string> stages;
+  const CompletedTooth whole =
+      complete_tooth(crown, models(), options, [&](std::string_view stage) { stages.emplace_back(stage); });
+  ASSERT_GT(stages.size(), 5U);
+  for (std::size_t last = 0; last < stages.size(); ++last) {
+    std::size_t begun = 0;
+    try {
+      complete_tooth(crown, models(), options, [&](std::string_view stage) {
+        if (begun++ == last) throw Cancelled{std::string(stage)};
+      });
+      ADD_FAILURE() << "not cancelled at " << stages[last];
+    } catch (const Cancelled& cancelled) {
+      EXPECT_EQ(cancelled.at, stages[last]);
+      EXPECT_EQ(begun, last + 1) << "no stage begins after the call is cancelled";
+    }
+  }
+  EXPECT_EQ(complete_tooth(crown, models(), options).mesh.vertices, whole.mesh.vertices);
+}
+
 TEST(CompleteTooth, ARealCappedCrownIsOpenedAndCompleted) {
   const auto file = shared_data / "crowns/patient0/crown_16.ply";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real crowns at " << file;
