@@ -25,7 +25,6 @@
 namespace rhizodont {
 namespace {
 
-constexpr int side = SplineLevel::side;
 constexpr double largest_directory = 3e7;  // blocks that the finest level would have if it were complete
 
 /// The samples with unit normals.
@@ -142,7 +141,7 @@ void require_in_range(const IndicatorOptions& options) {
 
 void IndicatorFunction::store(const std::vector<SplineLevel>& levels, const std::vector<double>& coefficients) {
   const std::vector<double> sums = accumulated(levels, coefficients);
-  const int wide = side + degree_;
+  const int wide = SplineLevel::side + degree_;
   const auto volume = static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide);
   for (const SplineLevel& spline : levels) {
     Level level;
@@ -157,8 +156,9 @@ void IndicatorFunction::store(const std::vector<SplineLevel>& levels, const std:
         const bool known = std::ranges::min(at) < 0 || spline.find(at[0], at[1], at[2]) >= 0;
         if (known) level.below[b] = static_cast<std::uint8_t>(level.below[b] | (1 << n));
       }
-      gather_box(spline, sums.data() + spline.first, {side * x - degree_, side * y - degree_, side * z - degree_}, wide,
-                 level.coefficients.data() + b * volume);
+      gather_box(spline, sums.data() + spline.first,
+                 {SplineLevel::side * x - degree_, SplineLevel::side * y - degree_, SplineLevel::side * z - degree_},
+                 wide, level.coefficients.data() + b * volume);
     });
     levels_.push_back(std::move(level));
   }
@@ -167,18 +167,18 @@ void IndicatorFunction::store(const std::vector<SplineLevel>& levels, const std:
 /// The coefficients of the functions on a cell of the finest level or of the coarser one around it, whichever is the
 /// first to be known.
 IndicatorFunction::Cell IndicatorFunction::find_cell(const std::array<int, 3>& finest) const {
-  const int wide = side + degree_;
+  const int wide = SplineLevel::side + degree_;
   const auto volume = static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide) * static_cast<std::size_t>(wide);
   for (std::size_t up = 0; up < levels_.size(); ++up) {
     const Level& level = levels_[levels_.size() - 1 - up];
     const int x = finest[0] >> up, y = finest[1] >> up, z = finest[2] >> up;
     const std::int32_t b =
-        level.directory[(static_cast<std::size_t>(z / side) * static_cast<std::size_t>(level.blocks[1]) +
-                         static_cast<std::size_t>(y / side)) *
+        level.directory[(static_cast<std::size_t>(z / SplineLevel::side) * static_cast<std::size_t>(level.blocks[1]) +
+                         static_cast<std::size_t>(y / SplineLevel::side)) *
                             static_cast<std::size_t>(level.blocks[0]) +
-                        static_cast<std::size_t>(x / side)];
+                        static_cast<std::size_t>(x / SplineLevel::side)];
     if (b < 0) continue;
-    const int i = x % side, j = y % side, k = z % side;
+    const int i = x % SplineLevel::side, j = y % SplineLevel::side, k = z % SplineLevel::side;
     // The functions of a cell near the block's lower sides come from the blocks below it.
     const int below = (i < degree_ ? 1 : 0) + (j < degree_ ? 2 : 0) + (k < degree_ ? 4 : 0);
     const std::uint8_t known = level.below[static_cast<std::size_t>(b)];
@@ -209,7 +209,8 @@ FieldSample IndicatorFunction::evaluate(const Point& p) const {
     values[axis] = spline_values(degree_, t);
     slopes[axis] = spline_derivatives(degree_, t);
   }
-  const auto wide = static_cast<std::size_t>(side + degree_), count = static_cast<std::size_t>(degree_ + 1);
+  const auto wide = static_cast<std::size_t>(SplineLevel::side + degree_),
+             count = static_cast<std::size_t>(degree_ + 1);
   for (std::size_t k = 0; k < count; ++k)
     for (std::size_t j = 0; j < count; ++j) {
       const double* line = cell.first + (k * wide + j) * wide;

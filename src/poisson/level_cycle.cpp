@@ -21,7 +21,6 @@ namespace {
 
 constexpr int smoothing_degree = 3;
 constexpr double smoothed_part = 1.0 / 20.0;  // of the spectrum's top: what lies below is left to the coarser level
-constexpr std::size_t block_size = SplineLevel::block;
 
 /// The largest value over all frequencies of the symbol of the infinite Toeplitz operator, which bounds the eigenvalues
 /// of every finite section; from a grid of frequencies, with a little to spare.
@@ -50,7 +49,7 @@ SymmetricTaps<float> taps(const std::array<double, 5>& table, double scale) {
 
 template <class Body>
 void for_each_block(const SplineLevel& level, const Body& body) {
-  tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) { body(b, b * block_size); });
+  tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) { body(b, b * SplineLevel::block); });
 }
 
 }  // namespace
@@ -96,7 +95,7 @@ void LevelCycle::for_each_product(const Level& level, const float* u, const Visi
   const auto h = static_cast<float>(spline.spacing);
   for_each_block(spline, [&](std::size_t b, std::size_t) {
     std::array<float, largest_patch> patch, scratch;
-    std::array<float, block_size> product;
+    std::array<float, SplineLevel::block> product;
     gather_patch(spline, u, b, patch.data());
     block_stiffness(spline.degree, mass, stiffness, patch.data(), product.data());
     for (float& p : product) p *= h;
@@ -109,7 +108,7 @@ void LevelCycle::smooth(Level& level, float* x) {
   const double middle = 0.5 * (1.0 + smoothed_part), half = 0.5 * (1.0 - smoothed_part), ratio = middle / half;
   const auto first = static_cast<float>(1.0 / middle);
   for_each_block(*level.spline, [&](std::size_t, std::size_t begin) {
-    for (std::size_t i = begin; i < begin + block_size; ++i) {
+    for (std::size_t i = begin; i < begin + SplineLevel::block; ++i) {
       level.direction[i] = first * level.inverse_bound[i] * level.residual[i];
       x[i] += level.direction[i];
     }
@@ -119,7 +118,7 @@ void LevelCycle::smooth(Level& level, float* x) {
     const double next = 1.0 / (2.0 * ratio - rho);
     const auto keep = static_cast<float>(next * rho), step = static_cast<float>(2.0 * next / half);
     for_each_product(level, level.direction.data(), [&](std::size_t b, const float* product) {
-      const std::size_t begin = b * block_size;
+      const std::size_t begin = b * SplineLevel::block;
       chebyshev_step(keep, step, level.inverse_bound.data() + begin, product, level.direction.data() + begin,
                      level.residual.data() + begin, level.next_direction.data() + begin, x + begin);
     });
@@ -136,8 +135,8 @@ void LevelCycle::restrict_load(std::size_t l, const float* r) {
     if (l + 1 < levels_.size())
       restrict_block(spline, b, *levels_[l + 1].spline, levels_[l + 1].outer.data(), level.outer.data() + begin);
     else
-      std::fill_n(level.outer.data() + begin, block_size, 0.0F);
-    for (std::size_t i = begin; i < begin + block_size; ++i)
+      std::fill_n(level.outer.data() + begin, SplineLevel::block, 0.0F);
+    for (std::size_t i = begin; i < begin + SplineLevel::block; ++i)
       level.load[i] = spline.active[i] ? r[i] - level.outer[i] : 0.0F;
   });
 }
@@ -151,8 +150,8 @@ void LevelCycle::apply(const std::vector<float>& r, std::vector<float>& x) {
     float* own = x.data() + level.spline->first;
     smooth(level, own);
     for_each_product(level, own, [&](std::size_t b, const float* product) {
-      float* outer = level.outer.data() + b * block_size;
-      for (std::size_t i = 0; i < block_size; ++i) outer[i] += product[i];
+      float* outer = level.outer.data() + b * SplineLevel::block;
+      for (std::size_t i = 0; i < SplineLevel::block; ++i) outer[i] += product[i];
     });
   }
   restrict_load(0, r.data());
@@ -164,18 +163,19 @@ void LevelCycle::apply(const std::vector<float>& r, std::vector<float>& x) {
     float* own = x.data() + spline.first;
     for_each_block(spline, [&](std::size_t b, std::size_t begin) {
       prolong_block(spline, b, *levels_[l - 1].spline, levels_[l - 1].sum.data(), level.sum.data() + begin);
-      for (std::size_t i = begin; i < begin + block_size; ++i) level.sum[i] += own[i];
+      for (std::size_t i = begin; i < begin + SplineLevel::block; ++i) level.sum[i] += own[i];
     });
     for_each_product(level, level.sum.data(), [&](std::size_t b, const float* product) {
-      const std::size_t begin = b * block_size;
-      for (std::size_t i = 0; i < block_size; ++i) level.residual[begin + i] = level.load[begin + i] - product[i];
+      const std::size_t begin = b * SplineLevel::block;
+      for (std::size_t i = 0; i < SplineLevel::block; ++i)
+        level.residual[begin + i] = level.load[begin + i] - product[i];
     });
     for_each_block(spline, [&](std::size_t, std::size_t begin) {
-      for (std::size_t i = begin; i < begin + block_size; ++i) level.sum[i] -= own[i];
+      for (std::size_t i = begin; i < begin + SplineLevel::block; ++i) level.sum[i] -= own[i];
     });
     smooth(level, own);
     for_each_block(spline, [&](std::size_t, std::size_t begin) {
-      for (std::size_t i = begin; i < begin + block_size; ++i) level.sum[i] += own[i];
+      for (std::size_t i = begin; i < begin + SplineLevel::block; ++i) level.sum[i] += own[i];
     });
   }
 }
@@ -190,7 +190,7 @@ void LevelCycle::factorise_coarsest() {
   for (Eigen::Index j = 0; j < n; ++j) {
     unit[coarsest_functions_[static_cast<std::size_t>(j)]] = 1.0F;
     for_each_product(level, unit.data(), [&](std::size_t b, const float* product) {
-      std::copy_n(product, block_size, column.data() + b * block_size);
+      std::copy_n(product, SplineLevel::block, column.data() + b * SplineLevel::block);
     });
     unit[coarsest_functions_[static_cast<std::size_t>(j)]] = 0.0F;
     for (Eigen::Index i = 0; i < n; ++i)

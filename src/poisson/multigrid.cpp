@@ -20,7 +20,6 @@
 namespace rhizodont {
 namespace {
 
-constexpr std::size_t block_size = SplineLevel::block;
 constexpr std::size_t chunk = 1 << 13;
 
 template <class Body>
@@ -46,12 +45,12 @@ void accumulate_level(const std::vector<SplineLevel>& levels, std::size_t l, con
                       LevelField& sums) {
   const SplineLevel& level = levels[l];
   tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
-    const std::size_t begin = level.first + b * block_size;
+    const std::size_t begin = level.first + b * SplineLevel::block;
     if (l > 0)
       prolong_block(level, b, levels[l - 1], sums.data() + levels[l - 1].first, sums.data() + begin);
     else
-      std::fill_n(sums.data() + begin, block_size, 0.0);
-    for (std::size_t i = begin; i < begin + block_size; ++i) sums[i] += coefficients[i];
+      std::fill_n(sums.data() + begin, SplineLevel::block, 0.0);
+    for (std::size_t i = begin; i < begin + SplineLevel::block; ++i) sums[i] += coefficients[i];
   });
 }
 
@@ -82,8 +81,8 @@ void ScreenedLaplacian::apply(const LevelField& coefficients, LevelField& out) {
     const auto mass = taps(tables.mass), stiffness = taps(tables.stiffness);
     tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
       std::array<double, largest_patch> patch, scratch;
-      std::array<double, block_size> shared{}, own, all;
-      const std::size_t begin = level.first + b * block_size;
+      std::array<double, SplineLevel::block> shared{}, own, all;
+      const std::size_t begin = level.first + b * SplineLevel::block;
       gather_patch(level, coefficients.data() + level.first, b, patch.data());
       block_stiffness(level.degree, mass, stiffness, patch.data(), own.data());
       gather_patch(level, sums_.data() + level.first, b, patch.data());
@@ -91,9 +90,9 @@ void ScreenedLaplacian::apply(const LevelField& coefficients, LevelField& out) {
       if (l + 1 < levels_.size())
         restrict_block(level, b, levels_[l + 1], outer_.data() + levels_[l + 1].first, shared.data());
       add_screening<double>(level, samples_[l].of(b), patch.data(), scratch.data(), shared.data());
-      for (std::size_t i = 0; i < block_size; ++i) {
+      for (std::size_t i = 0; i < SplineLevel::block; ++i) {
         outer_[begin + i] = shared[i] + level.spacing * own[i];
-        out[begin + i] = level.active[b * block_size + i] ? shared[i] + level.spacing * all[i] : 0.0;
+        out[begin + i] = level.active[b * SplineLevel::block + i] ? shared[i] + level.spacing * all[i] : 0.0;
       }
     });
   }
@@ -107,7 +106,7 @@ void add_screening_load(const std::vector<SplineLevel>& levels,
     double* field = outer.data() + level.first;
     if (l + 1 < levels.size())
       tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
-        restrict_block(level, b, levels[l + 1], outer.data() + levels[l + 1].first, field + b * block_size);
+        restrict_block(level, b, levels[l + 1], outer.data() + levels[l + 1].first, field + b * SplineLevel::block);
       });
     for (const ScreeningSample& sample : samples[l])
       for_each_function(level, sample.position,

@@ -15,7 +15,6 @@
 namespace rhizodont {
 namespace {
 
-constexpr std::size_t block_size = SplineLevel::block;
 using VectorField = std::array<LevelField, 3>;
 
 /// Smears the samples' normals on one level.
@@ -35,8 +34,8 @@ void splat(const SplineLevel& level, int number, const OrientedPoints& samples, 
 
 /// What the smeared normals give the functions of one block: sum over the axes of int dB_i/dx_axis field_axis.
 struct Divergence {
-  std::array<double, block_size> own{};  // of the level's own field
-  std::array<double, block_size> all{};  // with those of coarser levels
+  std::array<double, SplineLevel::block> own{};  // of the level's own field
+  std::array<double, SplineLevel::block> all{};  // with those of coarser levels
 };
 
 Divergence divergence_of_block(const SplineLevel& level, std::size_t block, const VectorField& own,
@@ -73,14 +72,14 @@ LevelField normal_load(const std::vector<SplineLevel>& levels, const OrientedPoi
   for (std::size_t l = levels.size(); l-- > 0;) {
     const SplineLevel& level = levels[l];
     tbb::parallel_for(std::size_t{0}, level.blocks.size(), [&](std::size_t b) {
-      std::array<double, block_size> of_finer{};
-      const std::size_t begin = level.first + b * block_size;
+      std::array<double, SplineLevel::block> of_finer{};
+      const std::size_t begin = level.first + b * SplineLevel::block;
       if (l + 1 < levels.size())
         restrict_block(level, b, levels[l + 1], outer.data() + levels[l + 1].first, of_finer.data());
       const Divergence divergence = divergence_of_block(level, b, own, sums);
-      for (std::size_t i = 0; i < block_size; ++i) {
+      for (std::size_t i = 0; i < SplineLevel::block; ++i) {
         outer[begin + i] = of_finer[i] + divergence.own[i];
-        load[begin + i] = level.active[b * block_size + i] ? of_finer[i] + divergence.all[i] : 0.0;
+        load[begin + i] = level.active[b * SplineLevel::block + i] ? of_finer[i] + divergence.all[i] : 0.0;
       }
     });
   }

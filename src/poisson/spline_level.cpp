@@ -15,8 +15,6 @@
 namespace rhizodont {
 namespace {
 
-constexpr int side = SplineLevel::side;
-
 /// Calls `visit(x, y, z)` for all block numbers that hold functions `low` .. `high` along each axis, within the box.
 template <class Visit>
 void for_blocks(const SplineLevel& level, const std::array<int, 3>& low, const std::array<int, 3>& high,
@@ -24,8 +22,8 @@ void for_blocks(const SplineLevel& level, const std::array<int, 3>& low, const s
   std::array<int, 3> from{}, to{};
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    from[a] = std::max(low[a], 0) / side;
-    to[a] = std::min(high[a] / side, level.blocks_along(axis) - 1);
+    from[a] = std::max(low[a], 0) / SplineLevel::side;
+    to[a] = std::min(high[a] / SplineLevel::side, level.blocks_along(axis) - 1);
     if (high[a] < 0) return;
   }
   for (int z = from[2]; z <= to[2]; ++z)
@@ -83,7 +81,7 @@ void mark_around(SplineLevel& level, const std::vector<FunctionBox>& boxes) {
 
 /// Blocks with functions of which those of the finer level's blocks are part.
 void mark_parents(SplineLevel& level, const SplineLevel& finer) {
-  constexpr int half = side / 2;
+  constexpr int half = SplineLevel::side / 2;
   for (int z = 0, i = 0; z < finer.blocks_along(2); ++z)
     for (int y = 0; y < finer.blocks_along(1); ++y)
       for (int x = 0; x < finer.blocks_along(0); ++x, ++i)
@@ -112,17 +110,17 @@ void number_blocks(SplineLevel& level) {
 
 void activate_box(SplineLevel& level, const std::array<int, 3>& low, const std::array<int, 3>& high) {
   for_blocks(level, low, high, [&](int bx, int by, int bz) {
-    const std::array<int, 3> corner{bx * side, by * side, bz * side};
+    const std::array<int, 3> corner{bx * SplineLevel::side, by * SplineLevel::side, bz * SplineLevel::side};
     char* flags = level.active.data() + static_cast<std::size_t>(level.find(bx, by, bz)) * SplineLevel::block;
     std::array<int, 3> from{}, to{};
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
       from[a] = std::max(low[a] - corner[a], 0);
-      to[a] = std::min({high[a] - corner[a], side - 1, level.functions(axis) - 1 - corner[a]});
+      to[a] = std::min({high[a] - corner[a], SplineLevel::side - 1, level.functions(axis) - 1 - corner[a]});
     }
     for (int z = from[2]; z <= to[2]; ++z)
       for (int y = from[1]; y <= to[1]; ++y)
-        for (int x = from[0]; x <= to[0]; ++x) flags[(z * side + y) * side + x] = 1;
+        for (int x = from[0]; x <= to[0]; ++x) flags[(z * SplineLevel::side + y) * SplineLevel::side + x] = 1;
   });
 }
 
@@ -159,7 +157,7 @@ SplinePosition locate(const SplineLevel& level, const Point& p) {
 double LevelLayout::directory_size() const {
   double size = 1.0;
   for (const int cells : coarsest_cells)
-    size *= std::ceil(static_cast<double>(cells) * std::ldexp(1.0, count - 1) / side);
+    size *= std::ceil(static_cast<double>(cells) * std::ldexp(1.0, count - 1) / SplineLevel::side);
   return size;
 }
 
