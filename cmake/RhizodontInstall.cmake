@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: Rhizodont contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# One shared library with all rooms: what `find_package(Rhizodont)` gives. Its public headers need Eigen alone; torch,
-# CGAL and the others stay inside.
+# One shared library with all rooms: what `find_package(Rhizodont)` gives. Its public headers need Eigen alone; CGAL
+# and the others stay inside.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -20,11 +20,14 @@ target_link_libraries(rhizodont_library
   PRIVATE ${rooms})
 target_include_directories(rhizodont_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(rhizodont_library INTERFACE cxx_std_20)
-# The folder of the BLAS that the networks need, see src/learning/CMakeLists.txt.
-set_target_properties(rhizodont_library rhizodont PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
 
 install(TARGETS rhizodont_library EXPORT RhizodontTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS rhizodont RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+if(RHIZODONT_TRAINING)
+  # The folder of the BLAS that torch needs, see src/learning/CMakeLists.txt.
+  set_target_properties(rhizodont-train PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+  install(TARGETS rhizodont-train RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 install(DIRECTORY include/rhizodont ${CMAKE_CURRENT_BINARY_DIR}/include/rhizodont
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rhizodont/models)

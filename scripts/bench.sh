@@ -50,7 +50,11 @@ run "Indicator function beside Open3D and CGAL" build/bench/poisson/bench_poisso
 run "Indicator function: growth" build/bench/poisson/bench_poisson "$data" growth
 run "GradNormal: angles and growth" build/bench/isosurface/bench_isosurface "$data"
 run "Restricted Voronoi diagram; crown triangles given by the dual" build/bench/voronoi/bench_voronoi "$data"
-run "Networks beside torch" build/bench/networks/bench_networks "$data" models
+if [ -x build/bench/networks/bench_networks ]; then
+  run "Networks beside torch" build/bench/networks/bench_networks "$data" models
+else
+  printf '\n## Networks beside torch\n\nNot measured: this build has no torch (RHIZODONT_TRAINING).\n'
+fi
 run "Whole tooth: growth with the crown and with 1/e^2, peak memory" \
   build/bench/pipeline/bench_pipeline "$scratch/growth.csv" 5000 10000 20000 50000 100000
 /usr/bin/python3 bench/pipeline/plot_growth.py "$scratch/growth.csv" docs/growth.svg

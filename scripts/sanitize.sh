@@ -7,16 +7,16 @@
 # usage: sanitize.sh [BUILD=build-sanitize] [SANITIZERS=address,undefined] [CROWN.ply FDI]
 # The crown defaults to a real one of ../shared/data where that folder is, else only the sample is completed. Assertions
 # and vectors' index checks are on. Any finding ends the test at once, and the script with 1.
-# Left out: the tests of learning and atlas, which are slow; the network itself runs in those of the pipeline.
-# ThreadSanitizer is of no use: libtbb and libtorch are not built for it, it does not see how they synchronise, and reports
-# races in every parallel loop. That results are the same for any number of threads is tested instead.
+# Left out: the tests of training and families, which are slow.
+# ThreadSanitizer is of no use: libtbb is not built for it, it does not see how it synchronises, and reports races in every
+# parallel loop. That results are the same for any number of threads is tested instead.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${1:-build-sanitize}
 sanitizers=${2:-address,undefined}
 crown=${3:-../shared/data/validation/crown_36.ply}
 fdi=${4:-36}
-rooms=(mesh io operators completion poisson isosurface voronoi skirt fusion evaluation pipeline hostile_crowns)
+rooms=(mesh io operators networks completion poisson isosurface voronoi skirt fusion evaluation pipeline hostile_crowns)
 launcher=$(command -v ccache || true)
 cmake -S . -B "$build" -G Ninja -DRHIZODONT_SANITIZE="$sanitizers" -DRHIZODONT_BENCH=OFF \
   ${launcher:+-DCMAKE_CXX_COMPILER_LAUNCHER=$launcher} > /dev/null

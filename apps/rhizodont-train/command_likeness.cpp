@@ -45,6 +45,9 @@ void run(const LikenessCommand& command) {
   if (command.teeth < 1 || command.held_out < 1) throw UsageError("The numbers of teeth must be at least 1.");
   require_no_mesh_ending(command.weights, "a weight file");
   require_safe_outputs({}, {command.weights});
+  require_in_range(command.options);
+  if (command.bounds_only && !std::filesystem::exists(command.weights))
+    throw InputError(command.weights.string() + " is not there: bounds are found for weights.");
   prepare_for_training();
   const ToothFamilies families = load_tooth_families(command.data);
   TensorFile weights = command.bounds_only ? read_safetensors(command.weights) : train(command, families);

@@ -26,16 +26,7 @@ std::string figures_text(const std::map<std::string, double>& figures, const cha
   return text;
 }
 
-}  // namespace
-
-void prepare_for_training() {
-  if (const std::string warning = blas_warning(); !warning.empty())
-    fmt::print(stderr, "rhizodont-train: {}\n", warning);
-  // Tensors of some megabytes come and go all the time: without this, each one is new pages from the kernel.
-  mallopt(M_MMAP_THRESHOLD, 1 << 30);
-  mallopt(M_TRIM_THRESHOLD, 1 << 30);
-}
-
+/// A report as a line of text, without time and line break.
 std::string progress_text(const TrainingProgress& p) {
   switch (p.event) {
     case TrainingEvent::resumed:
@@ -49,6 +40,16 @@ std::string progress_text(const TrainingProgress& p) {
   }
   return fmt::format("validation at {} samples: {}{}", p.samples, figures_text(p.validation, ", "),
                      p.is_best ? ", best so far" : "");
+}
+
+}  // namespace
+
+void prepare_for_training() {
+  if (const std::string warning = blas_warning(); !warning.empty())
+    fmt::print(stderr, "rhizodont-train: {}\n", warning);
+  // Tensors of some megabytes come and go all the time: without this, each one is new pages from the kernel.
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
 }
 
 void print_progress(const TrainingProgress& progress) {

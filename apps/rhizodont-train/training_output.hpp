@@ -15,9 +15,6 @@ namespace rhizodont::command_line {
 /// Tunes this process for training and warns of a slow BLAS on standard error.
 void prepare_for_training();
 
-/// A report as a line of text, without time and line break.
-std::string progress_text(const TrainingProgress& progress);
-
 /// Prints a report with the time.
 void print_progress(const TrainingProgress& progress);
 

@@ -39,8 +39,7 @@ LoadedBlas loaded_blas() {
 std::string blas_warning() {
   const LoadedBlas blas = loaded_blas();
   if (blas.fast) return {};
-  return "The networks will be slow: the loaded linear algebra library is " +
-         (blas.path.empty() ? "unknown" : blas.path) +
+  return "Training will be slow: the loaded linear algebra library is " + (blas.path.empty() ? "unknown" : blas.path) +
          ", not the OpenMP build of OpenBLAS (Debian package libopenblas0-openmp).";
 }
 

@@ -15,7 +15,7 @@ struct LoadedBlas {
 /// Looks through the shared objects of this process for the BLAS that torch's calls reach.
 LoadedBlas loaded_blas();
 
-/// One sentence for the user if the networks will be slow with the loaded BLAS; empty if all is well.
+/// One sentence for the user if training will be slow with the loaded BLAS; empty if all is well.
 std::string blas_warning();
 
 }  // namespace rhizodont

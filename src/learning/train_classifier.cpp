@@ -182,18 +182,7 @@ Batch varied(torch::Tensor x, torch::Tensor labels, int classes) {
   return {x, labels};
 }
 
-void check(const LabelledPanoramas& samples, const ClassifierTrainingOptions& o) {
-  require_ranges("training", {{"steps", o.steps, OptionRange::at_least(10)},
-                              {"batch", o.batch, OptionRange::at_least(2)},
-                              {"learning_rate", o.learning_rate, OptionRange::above(0)},
-                              {"weight_decay", o.weight_decay, OptionRange::at_least(0)},
-                              {"label_smoothing", o.label_smoothing, OptionRange::at_least(0).below(1)},
-                              {"dropout", o.dropout, OptionRange::at_least(0).below(1)},
-                              {"width", o.width, OptionRange::at_least(1).at_most(256)},
-                              {"classes", o.classes, OptionRange::at_least(3)},
-                              {"threads", o.threads, OptionRange::at_least(1)},
-                              {"report_steps", o.report_steps, OptionRange::at_least(1)}});
-  if (o.classes % 2 == 0) throw UsageError("The option classes of training must be odd.");
+void require_fitting(const LabelledPanoramas& samples, const ClassifierTrainingOptions& o) {
   const std::size_t each = samples.channels * samples.rows * samples.columns;
   const bool fits = samples.channels == 5 && samples.rows % 4 == 0 && samples.columns % 4 == 0 && each > 0 &&
                     samples.labels.size() >= 2 && samples.values.size() == samples.labels.size() * each &&
@@ -215,8 +204,23 @@ double rate_at(int step, const ClassifierTrainingOptions& o) {
 
 }  // namespace
 
+void require_in_range(const ClassifierTrainingOptions& o) {
+  require_ranges("training", {{"steps", o.steps, OptionRange::at_least(10)},
+                              {"batch", o.batch, OptionRange::at_least(2)},
+                              {"learning_rate", o.learning_rate, OptionRange::above(0)},
+                              {"weight_decay", o.weight_decay, OptionRange::at_least(0)},
+                              {"label_smoothing", o.label_smoothing, OptionRange::at_least(0).below(1)},
+                              {"dropout", o.dropout, OptionRange::at_least(0).below(1)},
+                              {"width", o.width, OptionRange::at_least(1).at_most(256)},
+                              {"classes", o.classes, OptionRange::at_least(3)},
+                              {"threads", o.threads, OptionRange::at_least(1)},
+                              {"report_steps", o.report_steps, OptionRange::at_least(1)}});
+  if (o.classes % 2 == 0) throw UsageError("The option classes of training must be odd.");
+}
+
 TensorFile train_classifier(const LabelledPanoramas& samples, const ClassifierTrainingOptions& options) {
-  check(samples, options);
+  require_in_range(options);
+  require_fitting(samples, options);
   const TensorThreads threads(options.threads);
   torch::manual_seed(options.seed);
   PanoramaNet net(samples, options);

@@ -28,6 +28,9 @@ struct ClassifierTrainingOptions {
   std::function<void(const TrainingProgress&)> progress;
 };
 
+/// Throws UsageError for an option out of its range, naming it.
+void require_in_range(const ClassifierTrainingOptions& options);
+
 /// Trains a convolutional network on panoramas: AdamW (Loshchilov, Hutter, 2019) with one cycle of the learning rate
 /// (L. N. Smith, N. Topin, "Super-convergence", 2018), batch normalisation folded into the weights that it returns.
 /// Each panorama comes turned, mirrored half of the time, scaled, with noise and with places missing.

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <exception>
 
 namespace rhizodont {
 namespace {
@@ -33,6 +34,8 @@ networks::Matrix ordered_points(const CompletionShape& shape, std::span<const Ei
   if (points.row(0) == points.row(shape.centres_2 - 1)) throw InputError("The crown's points coincide.");
   return points;
 }
+
+NoResultError no_result() { return NoResultError("The completion network came to no result for this crown."); }
 
 }  // namespace
 
@@ -59,12 +62,15 @@ CompletedPoints CompletionNetwork::complete(std::span<const Eigen::Vector3f> cro
   const networks::Matrix points = ordered_points(impl_->network.shape, crown);
   const networks::Prediction prediction = networks::predict(impl_->network, points, type, form_axis);
   if (!prediction.points.allFinite() || !prediction.normals.allFinite() || !prediction.spread.allFinite())
-    throw NoResultError("The completion network came to no result for this crown.");
+    throw no_result();
   CompletedPoints result;
   for (Eigen::Index i = 0; i < prediction.points.rows(); ++i) {
     result.points.emplace_back(prediction.points.row(i));
-    result.normals.push_back(Eigen::Vector3f(prediction.normals.row(i)).normalized());
-    result.spread.push_back(std::exp(prediction.spread.data()[i]));
+    const Eigen::Vector3f normal = prediction.normals.row(i);
+    const float spread = std::exp(prediction.spread.data()[i]);
+    if (!(normal.squaredNorm() > 0) || !(spread > 0) || !std::isfinite(spread)) throw no_result();
+    result.normals.push_back(normal.normalized());
+    result.spread.push_back(spread);
   }
   return result;
 }
@@ -72,9 +78,16 @@ CompletedPoints CompletionNetwork::complete(std::span<const Eigen::Vector3f> cro
 std::vector<CompletedPoints> CompletionNetwork::complete(std::span<const CrownPoints> crowns) const {
   std::vector<CompletedPoints> result(crowns.size());
   // Crown by crown, not layer by layer: a crown's matrices stay in the cache, and two threads need not meet in between.
+  std::vector<std::exception_ptr> failures(crowns.size());
   tbb::parallel_for(std::size_t{0}, crowns.size(), [&](std::size_t i) {
-    result[i] = complete(crowns[i].points, crowns[i].type, crowns[i].form_axis);
+    try {
+      result[i] = complete(crowns[i].points, crowns[i].type, crowns[i].form_axis);
+    } catch (const Error&) {
+      failures[i] = std::current_exception();
+    }
   });
+  for (const std::exception_ptr& failure : failures)
+    if (failure) std::rethrow_exception(failure);
   return result;
 }
 

@@ -44,10 +44,12 @@ class CompletionNetwork {
   /// `form_axis`: x and y of the axis of the crown's form, where z is that of its border (as in training).
   /// The result depends neither on the order of the points nor on the number of threads.
   /// Throws InputError for an axis that is not a number and for too few, non-finite or coinciding points or points far
-  /// outside of the pose's cube (|x| > 4), UsageError for another type.
+  /// outside of the pose's cube (|x| > 4), UsageError for another type, NoResultError where what comes out is no
+  /// number.
   CompletedPoints complete(std::span<const Eigen::Vector3f> crown, int type, const Eigen::Vector2f& form_axis) const;
 
   /// The same for several crowns at once, say of an arch, side by side: in their order, each to the bit as alone.
+  /// Throws as for one crown, of the first that fails.
   std::vector<CompletedPoints> complete(std::span<const CrownPoints> crowns) const;
 
   /// Number of crown points that the network looks at (1024 in the shipped weights).

@@ -71,6 +71,10 @@ inline float complementary_error(float x) {
   for (Eigen::Index i = 0; i < count; ++i) values[i] = values[i] < 0 ? factor * values[i] : values[i];
 }
 
+[[gnu::target_clones("avx512f", "avx2", "default")]] void drop_negatives(float* values, Eigen::Index count) {
+  for (Eigen::Index i = 0; i < count; ++i) values[i] = values[i] < 0 ? 0.0F : values[i];
+}
+
 // Sums and the like over eight lanes, then over the lanes, then over the rest: one order for all processors.
 constexpr Eigen::Index lanes = 8;
 using Floats = float __attribute__((vector_size(lanes * sizeof(float))));
@@ -128,7 +132,7 @@ void hyperbolic_tangent(MatrixSpan values) {
 }
 
 void rectify(MatrixSpan values) {
-  each_row(values, [&](float* row) { scale_negatives(row, values.cols(), 0.0F); });
+  each_row(values, [&](float* row) { drop_negatives(row, values.cols()); });
 }
 
 void leaky_rectify(MatrixSpan values) {

@@ -7,7 +7,7 @@
 namespace rhizodont::networks {
 
 // Functions of single numbers and of rows, on this thread. Compiled without fused multiply-add: the same bits on all
-// processors. Errors are absolute, for all finite arguments.
+// processors. Errors are absolute, for all finite arguments; of others, NaN stays NaN and infinity may become it.
 
 /// x -> x / 2 (1 + erf(x / sqrt 2)), within 3e-7 (1 + |x|) (Hendrycks, Gimpel: Gaussian Error Linear Units, 2016).
 void gelu(MatrixSpan values);

@@ -12,10 +12,13 @@
 namespace rhizodont::networks {
 namespace {
 
-/// Raises `largest` to a row's values.
+/// Raises `largest` to a row's values; what is not a number stays so.
 [[gnu::target_clones("avx512f", "avx2", "default")]] void raise(float* largest, const float* row,
                                                                 Eigen::Index channels) {
-  for (Eigen::Index c = 0; c < channels; ++c) largest[c] = row[c] > largest[c] ? row[c] : largest[c];
+  for (Eigen::Index c = 0; c < channels; ++c) {
+    const float raised = row[c] <= largest[c] ? largest[c] : row[c];
+    largest[c] = largest[c] != largest[c] ? largest[c] : raised;
+  }
 }
 
 /// result's rows first .. first + count - 1: the largest over their neighbours.

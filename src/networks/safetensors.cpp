@@ -100,6 +100,8 @@ StoredTensor read_entry(const std::filesystem::path& path, const std::string& na
   std::vector<std::uint64_t> offsets;
   try {
     type = entry.at("dtype").get<std::string>();
+    if (!entry.at("shape").is_array() || !entry.at("data_offsets").is_array())
+      damaged(path, "shape and byte range of \"" + name + "\" are not lists");
     for (const auto& size : entry.at("shape")) {
       if (!size.is_number_unsigned()) damaged(path, "the shape of \"" + name + "\" is not made of counts");
       tensor.shape.push_back(size.get<std::int64_t>());

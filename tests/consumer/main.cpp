@@ -6,6 +6,7 @@
 #include <rhizodont/check.hpp>
 #include <rhizodont/complete.hpp>
 #include <rhizodont/io.hpp>
+#include <rhizodont/version.hpp>
 
 #include <cstdio>
 
@@ -14,6 +15,6 @@ int main(int argc, char** argv) {
   const rhizodont::TriangleMesh crown = rhizodont::load_mesh(argv[1]).mesh;
   const auto models = rhizodont::CompletionModels::load(rhizodont::default_models_folder());
   const rhizodont::CompletedTooth tooth = rhizodont::complete_tooth(crown, models);
-  std::printf("root %.2f mm\n", tooth.record.root.length_mm);
+  std::printf("rhizodont %s, root %.2f mm\n", RHIZODONT_VERSION, tooth.record.root.length_mm);
   return rhizodont::check(crown, tooth.mesh).holds() ? 0 : 4;
 }

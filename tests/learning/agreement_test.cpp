@@ -38,6 +38,8 @@ Network with_weights(Network network, const TensorFile& file) {
 
 double largest_difference(const std::vector<Eigen::Vector3f>& ours, const torch::Tensor& theirs) {
   const torch::Tensor other = theirs.contiguous();
+  EXPECT_TRUE(torch::isfinite(other).all().item<bool>());
+  EXPECT_EQ(static_cast<std::int64_t>(3 * ours.size()), other.numel());
   float largest = 0;
   for (std::size_t i = 0; i < ours.size(); ++i)
     largest = std::max(
@@ -108,6 +110,7 @@ void expect_skirt_agrees(const std::vector<Crown>& crowns) {
     const SurfaceSample surface = skirt_features(decimated(crown.mesh, 3500), shape.eigenvectors);
     const std::vector<float> confidence = ours.confidence(surface);
     const torch::Tensor expected = torch::sigmoid(trainers->forward(to_tensors(surface, false))).contiguous();
+    ASSERT_EQ(static_cast<std::int64_t>(confidence.size()), expected.numel());
     for (std::size_t v = 0; v < confidence.size(); ++v)
       EXPECT_NEAR(confidence[v], expected.data_ptr<float>()[v], 1e-5F) << crown.name;
   }

@@ -51,6 +51,8 @@ TEST(CompletionNetwork, CrownsTogetherGiveTheSameBitsAsAlone) {
   EXPECT_TRUE(shipped().complete(std::span<const CrownPoints>()).empty());
   crowns[3].points.resize(1000);
   EXPECT_THROW(shipped().complete(crowns), InputError);
+  crowns[1].type = 99;
+  EXPECT_THROW(shipped().complete(crowns), UsageError) << "the first that fails is the one that is told of";
 }
 
 TEST(CompletionNetwork, OrderOfPointsDoesNotMatter) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace rhizodont::networks {
 namespace {
@@ -31,6 +32,14 @@ TEST(Layers, ActivatedSumAddsOneRowToAll) {
 }
 
 TEST(Layers, LargestOfRows) { EXPECT_EQ(largest_of_rows(rows({{1, -2, -7}, {0, 5, -9}})), rows({{1, 5, -7}})); }
+
+TEST(Layers, LargestOfRowsKeepsWhatIsNotANumber) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const Matrix largest = largest_of_rows(rows({{1, nan, 3}, {nan, 5, -9}, {7, 8, 9}}));
+  EXPECT_TRUE(std::isnan(largest(0, 0)));
+  EXPECT_TRUE(std::isnan(largest(0, 1)));
+  EXPECT_EQ(largest(0, 2), 9);
+}
 
 TEST(Layers, EdgeConvolutionTakesTheLargestNeighbourOfEachChannel) {
   const Matrix keys = rows({{1, 8}, {2, -7}, {-3, 6}}), queries = rows({{100, -100}, {0, 0}});
