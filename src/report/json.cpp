@@ -54,6 +54,23 @@ Json solid_json(const SolidCheck& solid) {
 
 }  // namespace
 
+void to_json(Json& json, const CompleteOptions& options) {
+  const RootSteering& steering = options.steering;
+  json = Json{{"fdi", value_or_null(options.fdi)},
+              {"e_mm", options.e},
+              {"repair", options.repair},
+              {"skirt", options.skirt ? Json(*options.skirt) : Json("keep")},
+              {"cap", options.cap == CapHandling::keep ? "keep" : "drop"},
+              {"millimetres_per_unit", options.millimetres_per_unit},
+              {"transition_mm", value_or_null(options.transition)},
+              {"steering",
+               {{"root_length_mm", value_or_null(steering.length_mm)},
+                {"tip_degrees", steering.tip_degrees},
+                {"torque_degrees", steering.torque_degrees},
+                {"bend_degrees", steering.bend_degrees}}},
+              {"threads", options.threads}};
+}
+
 void to_json(Json& json, const QualityFigures& figures) {
   json = Json{{"triangles", figures.triangles},
               {"q_avg", figures.q_avg},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rhizodont/check.hpp"
+#include "rhizodont/complete.hpp"
 #include "rhizodont/measure.hpp"
 
 #include <nlohmann/json.hpp>
@@ -10,8 +11,14 @@
 namespace rhizodont {
 
 // For `nlohmann::ordered_json(value)`. Lengths in mm, angles in degrees.
+void to_json(nlohmann::ordered_json& json, const CompleteOptions& options);
 void to_json(nlohmann::ordered_json& json, const QualityFigures& figures);
 void to_json(nlohmann::ordered_json& json, const CheckReport& report);
 void to_json(nlohmann::ordered_json& json, const MeshMeasures& measures);
+
+// Back again, for `json.get<T>()`. Throw nlohmann::json::exception for what is missing or of another kind.
+void from_json(const nlohmann::ordered_json& json, QualityFigures& figures);
+void from_json(const nlohmann::ordered_json& json, CheckReport& report);
+void from_json(const nlohmann::ordered_json& json, MeshMeasures& measures);
 
 }  // namespace rhizodont

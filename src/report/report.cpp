@@ -85,15 +85,6 @@ Json root_json(const CompletionRecord& record) {
   return json;
 }
 
-Json steering_json(const RootSteering& steering) {
-  Json json{{"root_length_mm", nullptr},
-            {"tip_degrees", steering.tip_degrees},
-            {"torque_degrees", steering.torque_degrees},
-            {"bend_degrees", steering.bend_degrees}};
-  if (steering.length_mm) json["root_length_mm"] = *steering.length_mm;
-  return json;
-}
-
 Json joining_json(const CompletionRecord& record) {
   return {{"guiding_vertices", record.joining.guiding_vertices},
           {"crown_to_guiding_surface_mean_mm", record.joining.guiding_distance_mean_mm},
@@ -132,18 +123,6 @@ Json input_json(const ReportedInput& input) {
   return {{"file", input.file_name ? Json(*input.file_name) : Json(nullptr)},
           {"sha256", input.sha256.empty() ? Json(nullptr) : Json(input.sha256)},
           {"rounded_to_float_mm", input.rounded_mm ? Json(*input.rounded_mm) : Json(nullptr)}};
-}
-
-Json options_json(const CompleteOptions& options) {
-  return {{"fdi", options.fdi ? Json(*options.fdi) : Json(nullptr)},
-          {"e_mm", options.e},
-          {"repair", options.repair},
-          {"skirt", options.skirt ? Json(*options.skirt) : Json("keep")},
-          {"cap", options.cap == CapHandling::keep ? "keep" : "drop"},
-          {"millimetres_per_unit", options.millimetres_per_unit},
-          {"transition_mm", options.transition ? Json(*options.transition) : Json(nullptr)},
-          {"steering", steering_json(options.steering)},
-          {"threads", options.threads}};
 }
 
 /// What every report begins with.
@@ -216,7 +195,7 @@ std::string completion_report(const CompletedTooth& tooth, const ReportedInput& 
       {"skirt_model", record.skirt_model},
       {"notice", "A predicted root is not the patient's anatomy. For research and visualisation only."},
       {"input", input_json(input)},
-      {"options", options_json(tooth.options)},
+      {"options", Json(tooth.options)},
       {"fdi", {{"number", record.fdi}, {"guessed", record.fdi_guessed}}},
       {"likeness", likeness_json(record.likeness)},
       {"frame", frame_json(record)},
@@ -236,7 +215,7 @@ std::string completion_refusal_report(const Error& error, const CompleteOptions&
                                       const std::vector<std::string>& warnings) {
   Json json = heading();
   json.update({{"input", input_json(input)},
-               {"options", options_json(options)},
+               {"options", Json(options)},
                {"refused", refusal_json(error)},
                {"warnings", warnings}});
   return text_of(json);
