@@ -27,50 +27,51 @@ struct CheckCommand {
 
 template <class Number>
 void print_number(const char* name, Number value) {
-  print_row(name, fmt::format("{}", value));
+  print_table_row(name, fmt::format("{}", value));
 }
 
 void print_quality(const char* title, const std::optional<QualityFigures>& figures) {
   if (!figures) return;
   fmt::print("{} ({})\n", title, figures->triangles);
-  print_row("Q mean, least", fmt::format("{:.4f}, {:.4f}", figures->q_avg, figures->q_min));
-  print_row("smallest angle mean, least",
-            fmt::format("{:.2f}, {:.2f} degrees", figures->theta_avg, figures->theta_min));
-  print_row("largest angle", fmt::format("{:.2f} degrees", figures->theta_max));
-  print_row("angles under 30 degrees", fmt::format("{:.3f} %", figures->percent_below_30));
+  print_table_row("Q mean, least", fmt::format("{:.4f}, {:.4f}", figures->q_avg, figures->q_min));
+  print_table_row("smallest angle mean, least",
+                  fmt::format("{:.2f}, {:.2f} degrees", figures->theta_avg, figures->theta_min));
+  print_table_row("largest angle", fmt::format("{:.2f} degrees", figures->theta_max));
+  print_table_row("angles under 30 degrees", fmt::format("{:.3f} %", figures->percent_below_30));
 }
 
 void print_table(const CheckReport& report) {
   const CrownCheck& crown = report.crown;
   fmt::print("Promise 1, the crown is exact: {}\n", crown.holds ? "kept" : "NOT KEPT");
-  print_row("coordinates compared as", std::string(crown.compared_as_float ? "float" : "double"));
-  print_row("crown triangles kept",
-            fmt::format("{} of {} ({:.3f} %)", crown.kept_triangles, crown.triangles, 100 * crown.kept_share));
+  print_table_row("coordinates compared as", std::string(crown.compared_as_float ? "float" : "double"));
+  print_table_row("crown triangles kept",
+                  fmt::format("{} of {} ({:.3f} %)", crown.kept_triangles, crown.triangles, 100 * crown.kept_share));
   print_number("crown triangles broken", crown.broken_triangles.size());
   if (crown.merged_vertices > 0)
-    print_row("crown vertices merged across seams",
-              fmt::format("{}, at most {:.6f} mm apart", crown.merged_vertices, crown.merged_distance_max));
+    print_table_row("crown vertices merged across seams",
+                    fmt::format("{}, at most {:.6f} mm apart", crown.merged_vertices, crown.merged_distance_max));
   if (crown.repaired_triangles > 0) print_number("crown triangles repaired", crown.repaired_triangles);
-  print_row("crown vertices kept", fmt::format("{} of {}", crown.kept_vertices, crown.vertices));
+  print_table_row("crown vertices kept", fmt::format("{} of {}", crown.kept_vertices, crown.vertices));
   print_number("crown vertices dropped", crown.dropped_vertices.size());
   if (crown.deviation) {
     const auto& bins = crown.deviation->bins;
-    print_row("deviation of crown, largest, mean",
-              fmt::format("{:.6f}, {:.6f} mm", crown.deviation->max, crown.deviation->mean));
-    print_row("vertices to 1e-3, 1e-2, 1e-1, over", fmt::format("{}, {}, {}, {}", bins[0], bins[1], bins[2], bins[3]));
+    print_table_row("deviation of crown, largest, mean",
+                    fmt::format("{:.6f}, {:.6f} mm", crown.deviation->max, crown.deviation->mean));
+    print_table_row("vertices to 1e-3, 1e-2, 1e-1, over",
+                    fmt::format("{}, {}, {}, {}", bins[0], bins[1], bins[2], bins[3]));
   }
   const SolidCheck& solid = report.solid;
   fmt::print("Promise 2, the tooth is a solid: {}\n", solid.holds ? "kept" : "NOT KEPT");
-  print_row("vertices, triangles", fmt::format("{}, {}", solid.vertices, solid.triangles));
+  print_table_row("vertices, triangles", fmt::format("{}, {}", solid.vertices, solid.triangles));
   print_number("border edges", solid.border_edges);
-  print_row("non-manifold edges, vertices",
-            fmt::format("{}, {}", solid.non_manifold_edges, solid.non_manifold_vertices));
+  print_table_row("non-manifold edges, vertices",
+                  fmt::format("{}, {}", solid.non_manifold_edges, solid.non_manifold_vertices));
   print_number("misoriented edges", solid.misoriented_edges);
   print_number("unreferenced vertices", solid.unreferenced_vertices);
   print_number("pieces", solid.components);
-  print_row("Euler number, genus",
-            fmt::format("{}, {}", solid.euler_number, solid.genus ? std::to_string(*solid.genus) : "-"));
-  print_row("volume", fmt::format("{:.3f} mm3", solid.volume));
+  print_table_row("Euler number, genus",
+                  fmt::format("{}, {}", solid.euler_number, solid.genus ? std::to_string(*solid.genus) : "-"));
+  print_table_row("volume", fmt::format("{:.3f} mm3", solid.volume));
   print_number("self-intersecting pairs", solid.self_intersections.size());
   fmt::print("Promise 3, new triangles are good: {}\n", report.new_triangles.holds() ? "kept" : "not kept");
   print_quality("New triangles", report.new_triangles.all);

@@ -23,27 +23,29 @@ struct MeasureCommand {
 
 void print_table(const MeshMeasures& m) {
   fmt::print("Triangles\n");
-  print_row("Q mean, least", fmt::format("{:.4f}, {:.4f}", m.quality.q_avg, m.quality.q_min));
-  print_row("smallest angle mean, least",
-            fmt::format("{:.2f}, {:.2f} degrees", m.quality.theta_avg, m.quality.theta_min));
-  print_row("largest angle", fmt::format("{:.2f} degrees", m.quality.theta_max));
-  print_row("angles under 30 degrees", fmt::format("{:.3f} %", m.quality.percent_below_30));
+  print_table_row("Q mean, least", fmt::format("{:.4f}, {:.4f}", m.quality.q_avg, m.quality.q_min));
+  print_table_row("smallest angle mean, least",
+                  fmt::format("{:.2f}, {:.2f} degrees", m.quality.theta_avg, m.quality.theta_min));
+  print_table_row("largest angle", fmt::format("{:.2f} degrees", m.quality.theta_max));
+  print_table_row("angles under 30 degrees", fmt::format("{:.3f} %", m.quality.percent_below_30));
   fmt::print("Topology\n");
-  print_row("vertices, edges, triangles", fmt::format("{}, {}, {}", m.vertices, m.edges, m.triangles));
-  print_row("pieces", std::to_string(m.components));
-  print_row("closed", m.closed ? "yes" : "no");
-  print_row("border edges, loops", fmt::format("{}, {}", m.border_edges, m.border_loops));
-  print_row("Euler number, genus", fmt::format("{}, {}", m.euler_number, m.genus ? std::to_string(*m.genus) : "-"));
-  print_row("self-intersecting pairs", std::to_string(m.self_intersections));
+  print_table_row("vertices, edges, triangles", fmt::format("{}, {}, {}", m.vertices, m.edges, m.triangles));
+  print_table_row("pieces", std::to_string(m.components));
+  print_table_row("closed", m.closed ? "yes" : "no");
+  print_table_row("border edges, loops", fmt::format("{}, {}", m.border_edges, m.border_loops));
+  print_table_row("Euler number, genus",
+                  fmt::format("{}, {}", m.euler_number, m.genus ? std::to_string(*m.genus) : "-"));
+  print_table_row("self-intersecting pairs", std::to_string(m.self_intersections));
   fmt::print("Size\n");
-  print_row("volume", m.closed ? fmt::format("{:.3f} mm3", m.volume) : "- (not closed)");
-  print_row("area", fmt::format("{:.3f} mm2", m.area));
+  print_table_row("volume", m.closed ? fmt::format("{:.3f} mm3", m.volume) : "- (not closed)");
+  print_table_row("area", fmt::format("{:.3f} mm2", m.area));
   for (std::size_t i = 0; i < 3; ++i)
-    print_row(i == 0   ? "from, to, extent in x"
-              : i == 1 ? "from, to, extent in y"
-                       : "from, to, extent in z",
-              fmt::format("{:.3f}, {:.3f}, {:.3f} mm", m.lowest[i], m.highest[i], m.highest[i] - m.lowest[i]));
-  print_row("edge least, mean, largest", fmt::format("{:.4f}, {:.4f}, {:.4f} mm", m.edge_min, m.edge_mean, m.edge_max));
+    print_table_row(i == 0   ? "from, to, extent in x"
+                    : i == 1 ? "from, to, extent in y"
+                             : "from, to, extent in z",
+                    fmt::format("{:.3f}, {:.3f}, {:.3f} mm", m.lowest[i], m.highest[i], m.highest[i] - m.lowest[i]));
+  print_table_row("edge least, mean, largest",
+                  fmt::format("{:.4f}, {:.4f}, {:.4f} mm", m.edge_min, m.edge_mean, m.edge_max));
   for (const std::string& defect : m.defects) fmt::print("- {}\n", defect);
 }
 

@@ -9,6 +9,6 @@
 namespace rhizodont::command_line {
 
 /// A line of a table on standard output.
-inline void print_row(const char* name, const std::string& value) { fmt::print("  {:<36}{}\n", name, value); }
+inline void print_table_row(const char* name, const std::string& value) { fmt::print("  {:<36}{}\n", name, value); }
 
 }  // namespace rhizodont::command_line
