@@ -11,7 +11,7 @@
 #include "learning/adapointr.hpp"
 #include "learning/diffusion_net.hpp"
 #include "learning/threads.hpp"
-#include "learning/weights.hpp"
+#include "learning/with_weights.hpp"
 #include "mesh/sampling.hpp"
 #include "networks/completion_network.hpp"
 #include "networks/surface_network.hpp"
@@ -58,13 +58,6 @@ void print_row(const std::string& what, int items, const std::function<void()>& 
   fmt::print("| {} | {:.1f} | {:.1f} | {:.2f} | {:.1f} | {:.1f} |\n", what, one.processor, torch.processor,
              torch.processor / one.processor, all.clock, all.processor);
   std::fflush(stdout);
-}
-
-template <typename Network>
-Network with_weights(Network network, const TensorFile& file) {
-  torch::NoGradGuard no_gradient;
-  for (auto& item : network->named_parameters()) load_tensor(file, item.key(), item.value());
-  return network;
 }
 
 std::vector<CrownPoints> network_inputs(const std::vector<BenchTooth>& teeth, const Atlas& atlas, int count) {

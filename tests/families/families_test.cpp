@@ -6,6 +6,7 @@
 #include "completion/registration.hpp"
 #include "families/crown_crop.hpp"
 #include "families/mean_teeth.hpp"
+#include "families/template_families.hpp"
 #include "families/tooth_family.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
@@ -27,24 +28,9 @@
 namespace rhizodont {
 namespace {
 
-const std::filesystem::path data = std::filesystem::path(RHIZODONT_SOURCE_DIR) / ".." / "shared" / "data";
+using test::shared_data;
 
-// Reading takes seconds: one set for all tests.
-const ToothFamilies& all_families() {
-  static const ToothFamilies families = [] {
-    FamilyLoadOptions options;
-    options.vertices = 3000;
-    return load_tooth_families(data, options);
-  }();
-  return families;
-}
-
-class Families : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(data / "templates" / "tooth_21.ply")) GTEST_SKIP() << "no template teeth in " << data;
-  }
-};
+class Families : public test::TemplateFamilies {};
 
 void expect_roots_of_type(const ToothFamilies& families) {
   const std::array<std::size_t, tooth_type_count> roots{1, 1, 1, 2, 1, 3, 3, 3, 1, 1, 1, 1, 1, 2, 2, 2};
@@ -166,7 +152,7 @@ TEST_F(Families, aTypeThatWasNotLoadedIsRefused) {
   options.vertices = 800;
   options.types = {8};
   options.crown_modes = 0;
-  const ToothFamilies families = load_tooth_families(data, options);
+  const ToothFamilies families = load_tooth_families(shared_data, options);
   EXPECT_TRUE(families.crown_models.empty());
   EXPECT_NO_THROW(generate_tooth(families, 8, 1));
   EXPECT_THROW(generate_tooth(families, 12, 1), UsageError);
@@ -174,7 +160,8 @@ TEST_F(Families, aTypeThatWasNotLoadedIsRefused) {
 
 void expect_models_on_templates(const ToothFamilies& families) {
   // Of both sides: 16 types, 11 loans between types that have models, and those of second molars lent to third ones.
-  ASSERT_EQ(families.crown_models.size(), std::filesystem::exists(data / "crowns" / "ssm") ? 2U * (16 + 11 + 2) : 0U);
+  ASSERT_EQ(families.crown_models.size(),
+            std::filesystem::exists(shared_data / "crowns" / "ssm") ? 2U * (16 + 11 + 2) : 0U);
   for (const FamilyCrownModel& model : families.crown_models) {
     const FamilyTemplate& tooth = families.templates[static_cast<std::size_t>(model.from)];
     const auto rows = static_cast<Eigen::Index>(3 * tooth.mesh.vertices.size());
@@ -318,7 +305,7 @@ TEST(FamilyFiles, missingFilesAreNamed) {
   }
   FamilyLoadOptions options;
   options.vertices = 3;
-  EXPECT_THROW(load_tooth_families(data, options), UsageError);
+  EXPECT_THROW(load_tooth_families(shared_data, options), UsageError);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 #include "completion/registration.hpp"
 #include "learning/adapointr.hpp"
 #include "learning/diffusion_net.hpp"
-#include "learning/weights.hpp"
+#include "learning/with_weights.hpp"
 #include "mesh/sampling.hpp"
 #include "networks/completion_network.hpp"
 #include "networks/surface_network.hpp"
@@ -28,13 +28,6 @@ namespace rhizodont {
 namespace {
 
 const std::filesystem::path root = RHIZODONT_SOURCE_DIR;
-
-template <typename Network>
-Network with_weights(Network network, const TensorFile& file) {
-  torch::NoGradGuard no_gradient;
-  for (auto& item : network->named_parameters()) load_tensor(file, item.key(), item.value());
-  return network;
-}
 
 double largest_difference(const std::vector<Eigen::Vector3f>& ours, const torch::Tensor& theirs) {
   const torch::Tensor other = theirs.contiguous();

@@ -7,6 +7,7 @@
 #include "families/crown_crop.hpp"
 #include "families/mean_teeth.hpp"
 #include "families/one_template.hpp"
+#include "families/template_families.hpp"
 #include "families/tooth_family.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/prepared_crown.hpp"
@@ -15,30 +16,11 @@
 
 #include <algorithm>
 #include <array>
-#include <filesystem>
 
 namespace rhizodont {
 namespace {
 
-const std::filesystem::path data = std::filesystem::path(RHIZODONT_SOURCE_DIR) / ".." / "shared" / "data";
-
-// Reading takes seconds: one set for all tests.
-const ToothFamilies& all_families() {
-  static const ToothFamilies families = [] {
-    FamilyLoadOptions options;
-    options.vertices = 3000;
-    return load_tooth_families(data, options);
-  }();
-  return families;
-}
-
-/// On the template teeth; skipped where these are missing.
-class CompletionSamples : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (!std::filesystem::exists(data / "templates" / "tooth_21.ply")) GTEST_SKIP() << "no template teeth in " << data;
-  }
-};
+class CompletionSamples : public test::TemplateFamilies {};
 
 using test::OneTemplate;
 
