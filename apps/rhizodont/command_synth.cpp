@@ -4,6 +4,7 @@
 #include "command_line/output_checks.hpp"
 #include "commands.hpp"
 #include "families/crown_crop.hpp"
+#include "families/mean_arch.hpp"
 #include "families/mean_teeth.hpp"
 #include "families/scanner_mesh.hpp"
 #include "families/tooth_family.hpp"
@@ -30,7 +31,7 @@ struct SynthCommand {
   std::uint64_t seed = 0;
   std::string output;
   std::string sheet;
-  std::string atlas;
+  std::string atlas, arch;
   bool crowns = false;
   bool clean_cut = false;
   bool skirts = false;
@@ -87,6 +88,11 @@ void write_atlas(const SynthCommand& command, const ToothFamilies& families) {
   fmt::print("{}\n", command.atlas);
 }
 
+void write_arch(const SynthCommand& command, const ToothFamilies& families) {
+  save_arch_model(make_arch_model(make_atlas(families), std::filesystem::path(command.data) / "crowns"), command.arch);
+  fmt::print("{}\n", command.arch);
+}
+
 /// Teeth made so far, for the sheet.
 struct Drawing {
   std::vector<TriangleMesh> meshes;
@@ -124,6 +130,10 @@ void require_safe_places(const SynthCommand& command) {
   if (!command.atlas.empty()) {
     require_no_mesh_ending(command.atlas, "a file of mean crowns (--atlas)");
     outputs.emplace_back(command.atlas);
+  }
+  if (!command.arch.empty()) {
+    require_no_mesh_ending(command.arch, "a model of the arch (--arch-model)");
+    outputs.emplace_back(command.arch);
   }
   const std::vector<std::filesystem::path> inputs = files_below(command.data);
   require_separate_files(inputs, made_up);
@@ -235,14 +245,17 @@ void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
 }
 
 void run(const SynthCommand& command) {
-  if (command.output.empty() && command.atlas.empty() && command.sheet.empty())
-    throw UsageError("Say where to: -o FOLDER for teeth, --sheet PNG for a picture, --atlas FILE for mean crowns.");
+  if (command.output.empty() && command.atlas.empty() && command.arch.empty() && command.sheet.empty())
+    throw UsageError(
+        "Say where to: -o FOLDER for teeth, --sheet PNG for a picture, --atlas FILE for mean crowns, "
+        "--arch-model FILE for how they stand in the arch.");
   if (!command.output.empty() && command.fdi.empty()) throw UsageError("Say which tooth: --type FDI, such as 36.");
   require_safe_places(command);
   FamilyLoadOptions options;
   if (command.edge_mm > 0) options.vertices = 20000;  // finer than the scan to be made
   const ToothFamilies families = load_tooth_families(command.data, options);
   if (!command.atlas.empty()) write_atlas(command, families);
+  if (!command.arch.empty()) write_arch(command, families);
   if (!command.output.empty()) command.skirts ? write_skirts(command, families) : write_teeth(command, families);
   if (command.output.empty() && !command.sheet.empty()) write_contact_sheet(command, families);
 }
@@ -274,6 +287,8 @@ void add_synth_command(CLI::App& app) {
   synth->add_option("--sheet", command->sheet,
                     "Draw what was made to this PNG; without -o: a contact sheet, --count teeth of each type");
   synth->add_option("--atlas", command->atlas, "Write mean crowns and anchors of all types to this safetensors file");
+  synth->add_option("--arch-model", command->arch,
+                    "Write where the mean crowns stand in the arch, and how, to this safetensors file");
   synth->add_flag("--overwrite", command->overwrite, "Teeth and crowns of the same names in the folder are replaced");
   synth->callback([command] { run(*command); });
 }

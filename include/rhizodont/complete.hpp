@@ -7,6 +7,7 @@
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/models.hpp"
 #include "rhizodont/root_steering.hpp"
+#include "rhizodont/tooth_directions.hpp"
 #include "rhizodont/units.hpp"
 
 #include <functional>
@@ -32,6 +33,9 @@ struct CompleteOptions {
   /// mm, [0, 5]: width of the smoothed band beside the crown; unset: from the border's edges and from how far the root
   /// misses the border.
   std::optional<double> transition;
+  /// Where the neighbours are known. They set the turn about the axis, and the crown's border moves the axis a little
+  /// away from theirs; unset: both come from the crown alone.
+  std::optional<ToothDirections> directions;
   RootSteering steering;  ///< what the user knows or wants of the root
   int threads = 0;        ///< >= 0: at most so many threads, for this call alone; 0: all that the caller may use
 };

@@ -251,17 +251,26 @@ struct Laid {
 };
 
 Laid lay(const OrientedPoints& points, const CanonicalFrame& upright, const MeanCrown& mean,
-         const RegistrationOptions& options) {
+         const std::vector<Eigen::Matrix3d>& starts, const RegistrationOptions& options) {
   const OrientedCloud crown = upright_cloud(points, upright), goal = cloud_of(mean.crown, upright.scale);
-  return {upright,
-          register_cloud(crown, goal, rotations_about_z(options.start_angles), options, {options.trim, options.trim})};
+  return {upright, register_cloud(crown, goal, starts, options, {options.trim, options.trim})};
+}
+
+Laid lay(const OrientedPoints& points, const CanonicalFrame& upright, const MeanCrown& mean,
+         const RegistrationOptions& options) {
+  return lay(points, upright, mean, rotations_about_z(options.start_angles), options);
+}
+
+double turn_about_z(const Laid& laid) {
+  const Eigen::Matrix3d& r = laid.found.at.rotation;
+  return std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
 }
 
 CrownFrame crown_frame(const Laid& laid) {
   // The axis is the crown's own: of the registration only the turn about it is kept.
   const Eigen::Matrix3d& r = laid.found.at.rotation;
   CrownFrame result;
-  const Eigen::Matrix3d turn = about_z(std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1)));
+  const Eigen::Matrix3d turn = about_z(turn_about_z(laid));
   result.frame = turned_frame(laid.upright, turn);
   constexpr double longest = 0.5;
   const Eigen::Vector3d up = (turn * r.transpose()).col(2);
@@ -290,6 +299,25 @@ CrownFrame frame_from(const OrientedPoints& points, const Eigen::Vector3d& axis,
   return crown_frame(lay(points, upright_frame(axis, centre, right_side), mean, options));
 }
 
+/// As `frame_from`, with +y not far from `buccal`: where the registration turns away from it, +y is `buccal` itself.
+CrownFrame frame_near(const OrientedPoints& points, const Eigen::Vector3d& axis, const Point& centre, bool right_side,
+                      const Eigen::Vector3d& buccal, const MeanCrown& mean, const RegistrationOptions& options) {
+  constexpr double furthest_start = std::numbers::pi / 4, furthest_found = std::numbers::pi / 3;
+  CanonicalFrame upright = upright_frame(axis, centre, right_side);
+  const Eigen::Vector3d towards = upright.direction_to_canonical(buccal);
+  upright = turned_frame(upright, about_z(std::atan2(towards.x(), towards.y())));
+  constexpr int steps = 4;
+  std::vector<Eigen::Matrix3d> starts;
+  for (int i = -steps; i <= steps; ++i) starts.push_back(about_z(furthest_start * i / steps));
+  const Laid laid = lay(points, upright, mean, starts, options);
+  CrownFrame found = crown_frame(laid);
+  if (std::abs(turn_about_z(laid)) > furthest_found) {
+    found.frame = upright;
+    found.form_axis.setZero();
+  }
+  return found;
+}
+
 void check_mean(const MeanCrown& mean) {
   if (mean.crown.points.size() < 50 || mean.crown.points.size() != mean.crown.normals.size())
     throw UsageError("The mean crown of this tooth type is missing from the atlas.");
@@ -302,12 +330,14 @@ Eigen::Vector3d CrownFrame::form_direction() const {
 }
 
 CrownFrame canonical_frame(const PreparedCrown& crown, int fdi, const MeanCrown& mean,
-                           const RegistrationOptions& options) {
+                           const RegistrationOptions& options, const std::optional<ToothDirections>& directions) {
   require_in_range(options);
   check_mean(mean);
   const bool right_side = is_right_side(fdi);
-  return frame_from(surface_points(crown.mesh), crown.growth_axis, area_centroid(crown.mesh), right_side, mean,
-                    options);
+  const OrientedPoints points = surface_points(crown.mesh);
+  const Point centre = area_centroid(crown.mesh);
+  if (directions) return frame_near(points, crown.growth_axis, centre, right_side, directions->buccal, mean, options);
+  return frame_from(points, crown.growth_axis, centre, right_side, mean, options);
 }
 
 TypeGuess guess_fdi_type(const PreparedCrown& crown, const Atlas& atlas, const RegistrationOptions& options) {

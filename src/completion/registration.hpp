@@ -4,11 +4,13 @@
 
 #include "completion/mean_crowns.hpp"
 #include "rhizodont/mesh.hpp"
+#include "rhizodont/tooth_directions.hpp"
 #include "teeth/fdi.hpp"
 #include "teeth/frame.hpp"
 #include "teeth/prepared_crown.hpp"
 
 #include <array>
+#include <optional>
 
 namespace rhizodont {
 
@@ -42,10 +44,11 @@ struct CrownFrame {
 };
 
 /// Canonical pose of an open crown with a known FDI number: axis and centre from the crown itself, rotation about the
-/// axis by registering the crown to the mean crown of its type. Deterministic. Throws UsageError for an unknown FDI
-/// number.
+/// axis by registering the crown to the mean crown of its type, within 60 degrees of `directions`' where they are
+/// known. Deterministic. Throws UsageError for an unknown FDI number.
 CrownFrame canonical_frame(const PreparedCrown& crown, int fdi, const MeanCrown& mean,
-                           const RegistrationOptions& options = {});
+                           const RegistrationOptions& options = {},
+                           const std::optional<ToothDirections>& directions = {});
 
 /// What tooth a crown seems to be.
 struct TypeGuess {

@@ -10,6 +10,7 @@
 namespace rhizodont {
 
 IdentifiedTooth identify_tooth(const PreparedCrown& crown, std::optional<int> fdi,
+                               const std::optional<ToothDirections>& directions,
                                const CompletionModels::Content& models) {
   IdentifiedTooth tooth;
   tooth.guessed = !fdi;
@@ -22,8 +23,8 @@ IdentifiedTooth identify_tooth(const PreparedCrown& crown, std::optional<int> fd
     if (tooth.guessed)
       tooth.warning = fmt::format("No FDI number was given; by its shape the crown was taken for tooth {}.", tooth.fdi);
   }
-  tooth.frame =
-      canonical_frame(crown, tooth.fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(tooth.fdi))]);
+  tooth.frame = canonical_frame(
+      crown, tooth.fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(tooth.fdi))], {}, directions);
   return tooth;
 }
 

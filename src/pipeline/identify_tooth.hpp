@@ -22,8 +22,10 @@ struct IdentifiedTooth {
 };
 
 /// Which tooth the crown is, whether it looks like it, and its canonical pose. @param fdi unset: guessed, and so said
+/// @param directions  how it stands, where that is known
 /// Throws InputError for what looks like no tooth, and as `canonical_frame`.
 IdentifiedTooth identify_tooth(const PreparedCrown& crown, std::optional<int> fdi,
+                               const std::optional<ToothDirections>& directions,
                                const CompletionModels::Content& models);
 
 }  // namespace rhizodont

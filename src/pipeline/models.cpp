@@ -26,6 +26,7 @@ constexpr const char* completion_file = "completion.safetensors";
 constexpr const char* atlas_file = "atlas.safetensors";
 constexpr const char* skirt_file = "skirt.safetensors";
 constexpr const char* likeness_file = "likeness.safetensors";
+constexpr const char* arch_file = "arch.safetensors";
 
 }  // namespace
 
@@ -39,20 +40,23 @@ std::vector<std::filesystem::path> model_files(const std::filesystem::path& fold
                        ", where the models should be.");
   }
   std::error_code ignored;
-  for (const char* optional : {skirt_file, likeness_file})
+  for (const char* optional : {skirt_file, likeness_file, arch_file})
     if (std::filesystem::exists(folder / optional, ignored)) files.push_back(folder / optional);
   return files;
 }
 
 CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
   model_files(folder);
-  auto content = std::make_shared<Content>(Content{
-      load_atlas(folder / atlas_file), CompletionNetwork::load(folder / completion_file), std::nullopt, std::nullopt});
+  auto content = std::make_shared<Content>(Content{load_atlas(folder / atlas_file),
+                                                   CompletionNetwork::load(folder / completion_file), std::nullopt,
+                                                   std::nullopt, std::nullopt});
   std::error_code ignored;
   if (const auto skirt = folder / skirt_file; std::filesystem::exists(skirt, ignored))
     content->skirt = SurfaceNetwork::load(skirt);
   if (const auto likeness = folder / likeness_file; std::filesystem::exists(likeness, ignored))
     content->likeness = load_likeness(likeness);
+  if (const auto arch = folder / arch_file; std::filesystem::exists(arch, ignored))
+    content->arch = load_arch_model(arch);
   return CompletionModels(std::move(content));
 }
 

@@ -7,6 +7,7 @@
 #include "networks/completion_network.hpp"
 #include "networks/surface_network.hpp"
 #include "rhizodont/complete.hpp"
+#include "segment/arch_model.hpp"
 
 #include <memory>
 #include <optional>
@@ -18,6 +19,7 @@ struct CompletionModels::Content {
   CompletionNetwork network;
   std::optional<SurfaceNetwork> skirt;
   std::optional<LikenessModel> likeness;
+  std::optional<ArchModel> arch;
 };
 
 /// What the models are made of: for the rooms that run them.

@@ -95,9 +95,10 @@ std::shared_ptr<const PreparedTooth::Content> prepare(const TriangleMesh& input,
   record.repairs = std::move(taken.record.repairs);
   record.skirt_model = std::move(taken.record.skirt_model);
   PreparedCrown crown = prepare_crown(std::move(taken.kept.mesh));
+  if (options.directions) crown.growth_axis = axis_in_arch(crown.growth_axis, options.directions->occlusal);
 
   clock.begin("frame");
-  const IdentifiedTooth tooth = identify_tooth(crown, options.fdi, models);
+  const IdentifiedTooth tooth = identify_tooth(crown, options.fdi, options.directions, models);
   record.fdi = tooth.fdi;
   record.fdi_guessed = tooth.guessed;
   record.likeness = tooth.likeness;
@@ -123,7 +124,7 @@ bool takes_another_part(const TriangleMesh& crown_at_work, const CompletionModel
   try {
     TakenCrown part = take_crown(crown_at_work, models.atlas, models.skirt, options);
     if (part.kept.old_vertices == kept_vertices) return false;
-    identify_tooth(prepare_crown(std::move(part.kept.mesh)), options.fdi, models);
+    identify_tooth(prepare_crown(std::move(part.kept.mesh)), options.fdi, options.directions, models);
     return true;
   } catch (const Error&) {
     return false;
@@ -144,6 +145,13 @@ void require_options_in_range(const CompleteOptions& options) {
     throw UsageError("The unit must be a positive number of millimetres.");
   if (options.threads < 0) throw UsageError("The number of threads cannot be negative.");
   if (options.fdi) tooth_type_of_fdi(*options.fdi);
+  if (options.directions) {
+    constexpr double tolerance = 0.02;
+    const auto& [occlusal, buccal] = *options.directions;
+    if (!(std::abs(occlusal.norm() - 1) < tolerance && std::abs(buccal.norm() - 1) < tolerance &&
+          std::abs(occlusal.dot(buccal)) < tolerance))
+      throw UsageError("The tooth's directions must be of unit length and at right angles to each other.");
+  }
   require_steering_in_range(options.steering);
 }
 

@@ -52,6 +52,12 @@ Json solid_json(const SolidCheck& solid) {
           {"self_intersections", solid.self_intersections}};
 }
 
+Json directions_or_null(const std::optional<ToothDirections>& directions) {
+  if (!directions) return nullptr;
+  const auto list = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
+  return {{"occlusal", list(directions->occlusal)}, {"buccal", list(directions->buccal)}};
+}
+
 }  // namespace
 
 void to_json(Json& json, const CompleteOptions& options) {
@@ -63,6 +69,7 @@ void to_json(Json& json, const CompleteOptions& options) {
               {"cap", options.cap == CapHandling::keep ? "keep" : "drop"},
               {"millimetres_per_unit", options.millimetres_per_unit},
               {"transition_mm", value_or_null(options.transition)},
+              {"directions", directions_or_null(options.directions)},
               {"steering",
                {{"root_length_mm", value_or_null(steering.length_mm)},
                 {"tip_degrees", steering.tip_degrees},

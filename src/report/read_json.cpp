@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include <functional>
 #include <map>
 
@@ -112,6 +114,13 @@ auto whole_number(T& into) {
   };
 }
 
+auto direction(Eigen::Vector3d& into) {
+  return [&into](const Json& value) {
+    const auto numbers = value.get<std::array<double, 3>>();
+    into = {numbers[0], numbers[1], numbers[2]};
+  };
+}
+
 template <class T>
 T figures_from(std::string_view text, const char* what) {
   try {
@@ -185,6 +194,13 @@ CompleteOptions options_from_json(std::string_view text) {
                                {"tip_degrees", taker(steering.tip_degrees)},
                                {"torque_degrees", taker(steering.torque_degrees)},
                                {"bend_degrees", taker(steering.bend_degrees)}};
+  const auto take_directions = [&](const Json& value) {
+    options.directions.reset();
+    if (value.is_null()) return;
+    ToothDirections& directions = options.directions.emplace();
+    take_options(value, "The tooth's directions",
+                 {{"occlusal", direction(directions.occlusal)}, {"buccal", direction(directions.buccal)}});
+  };
   const auto take_skirt = [&](const Json& value) {
     if (value.is_string()) {
       choice(options.skirt, {{"keep", std::nullopt}, {"auto", 0.5}})(value);
@@ -200,6 +216,7 @@ CompleteOptions options_from_json(std::string_view text) {
       {"cap", choice(options.cap, {{"keep", CapHandling::keep}, {"drop", CapHandling::drop}})},
       {"millimetres_per_unit", taker(options.millimetres_per_unit)},
       {"transition_mm", taker(options.transition)},
+      {"directions", take_directions},
       {"steering", [&](const Json& value) { take_options(value, "The options of steering", steering_takers); }},
       {"threads", whole_number(options.threads)}};
   Json json;

@@ -5,6 +5,12 @@
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 namespace rhizodont {
 
 Point CanonicalFrame::to_canonical(const Point& world) const { return direction_to_canonical(world - centre) / scale; }
@@ -29,6 +35,15 @@ Eigen::Vector3d growth_axis(const TriangleMesh& open_crown) {
   if (!(sum.norm() > 1e-3 * surface_area(open_crown)) || !sum.allFinite())
     throw InputError("The crown has no open border below, so its growth axis cannot be told.");
   return sum.normalized();
+}
+
+Eigen::Vector3d axis_in_arch(const Eigen::Vector3d& of_border, const Eigen::Vector3d& in_arch) {
+  constexpr double share = 1.0 / 3, most = 7 * std::numbers::pi / 180;
+  const Eigen::Vector3d about = in_arch.cross(of_border);
+  const double sine = about.norm();
+  if (!(sine > 0)) return in_arch;
+  const double angle = std::atan2(sine, in_arch.dot(of_border));
+  return Eigen::AngleAxisd(std::min(share * angle, most), about / sine) * in_arch;
 }
 
 }  // namespace rhizodont

@@ -30,4 +30,9 @@ struct CanonicalFrame {
 /// border alone. Throws InputError if the sum vanishes (closed surface, or nothing to go by).
 Eigen::Vector3d growth_axis(const TriangleMesh& open_crown);
 
+/// Unit growth axis of a crown in its arch: a third of the way from the one that the arch expects to the border's own,
+/// but at most 7 degrees away from the arch's. Gum that stands higher on one side leans a border by up to 40 degrees;
+/// teeth of different people lean by 8 against the mean arch (models/arch.md). Both unit.
+Eigen::Vector3d axis_in_arch(const Eigen::Vector3d& of_border, const Eigen::Vector3d& in_arch);
+
 }  // namespace rhizodont
