@@ -24,12 +24,23 @@ struct ClosedBox {
     return (low[0] <= other.high[0]) & (other.low[0] <= high[0]) & (low[1] <= other.high[1]) &
            (other.low[1] <= high[1]) & (low[2] <= other.high[2]) & (other.low[2] <= high[2]);
   }
+  /// mm^2: square of the distance between the two; 0 where they meet.
+  double squared_gap(const ClosedBox& other) const {
+    double sum = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double gap = std::max({0.0, other.low[axis] - high[axis], low[axis] - other.high[axis]});
+      sum += gap * gap;
+    }
+    return sum;
+  }
+  /// mm: the longest side.
+  double widest() const { return std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]}); }
   /// The least box around both.
   void extend(const ClosedBox& other);
 };
 
-/// Boxes in a balanced binary tree, each node split at the median along its widest axis: says which boxes meet. The
-/// tree depends on the boxes alone, not on the number of threads.
+/// Boxes in a balanced binary tree, each node split at the median along its widest axis: says which boxes meet and
+/// which are near. The tree depends on the boxes alone, not on the number of threads.
 class BoxTree {
  public:
   /// Precondition: finite boxes, fewer than 2^31.
@@ -65,6 +76,66 @@ class BoxTree {
               pairs.emplace_back(number_[i], others.number_[j]);
       });
     });
+  }
+
+  /// Visits boxes whose squared distance from `box` is less than the bound (mm^2), near ones first as far as the tree
+  /// tells. `visit(i, bound)` gets the number of a box and the bound, and returns the bound from then on, no larger. In
+  /// the caller's thread, in an order that is always the same.
+  template <class Visit>
+  void visit_nearer(const ClosedBox& box, double squared_bound, const Visit& visit) const {
+    if (empty()) return;
+    std::array<std::pair<std::size_t, double>, 64> open{};
+    std::size_t count = 0;
+    open[count++] = {1, nodes_[1].squared_gap(box)};
+    while (count > 0) {
+      const auto [node, gap] = open[--count];
+      if (!(gap < squared_bound)) continue;
+      if (node >= leaves_) {
+        for (std::size_t i = begin_of(node - leaves_); i < begin_of(node - leaves_ + 1); ++i)
+          if (boxes_[i].squared_gap(box) < squared_bound) squared_bound = visit(number_[i], squared_bound);
+        continue;
+      }
+      const double left = nodes_[2 * node].squared_gap(box), right = nodes_[2 * node + 1].squared_gap(box);
+      const bool left_first = left <= right;
+      open[count++] = left_first ? std::pair(2 * node + 1, right) : std::pair(2 * node, left);
+      open[count++] = left_first ? std::pair(2 * node, left) : std::pair(2 * node + 1, right);
+    }
+  }
+
+  /// Visits pairs (i, j) of a box i of this tree and a box j of the other whose squared distance is less than the
+  /// bound; likewise, with `visit(i, j, bound)`.
+  template <class Visit>
+  void visit_nearer_pairs(const BoxTree& others, double squared_bound, const Visit& visit) const {
+    if (empty() || others.empty()) return;
+    struct Open {
+      std::size_t mine, other;
+      double gap;
+    };
+    std::array<Open, 128> open{};
+    std::size_t count = 0;
+    const auto opened = [&](std::size_t mine, std::size_t other) {
+      return Open{mine, other, nodes_[mine].squared_gap(others.nodes_[other])};
+    };
+    open[count++] = opened(1, 1);
+    while (count > 0) {
+      const auto [mine, other, gap] = open[--count];
+      if (!(gap < squared_bound)) continue;
+      const bool mine_ends = mine >= leaves_, other_ends = other >= others.leaves_;
+      if (mine_ends && other_ends) {
+        for (std::size_t i = begin_of(mine - leaves_); i < begin_of(mine - leaves_ + 1); ++i)
+          for (std::size_t j = others.begin_of(other - others.leaves_); j < others.begin_of(other - others.leaves_ + 1);
+               ++j)
+            if (boxes_[i].squared_gap(others.boxes_[j]) < squared_bound)
+              squared_bound = visit(number_[i], others.number_[j], squared_bound);
+        continue;
+      }
+      const bool split_mine = other_ends || (!mine_ends && nodes_[mine].widest() >= others.nodes_[other].widest());
+      Open near = split_mine ? opened(2 * mine, other) : opened(mine, 2 * other);
+      Open far = split_mine ? opened(2 * mine + 1, other) : opened(mine, 2 * other + 1);
+      if (far.gap < near.gap) std::swap(near, far);
+      open[count++] = far;
+      open[count++] = near;
+    }
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 
 namespace rhizodont {
@@ -71,6 +72,55 @@ TEST(BoxTree, KeepsWhatIsAskedForAlwaysInTheSameOrder) {
   EXPECT_FALSE(once.empty());
   EXPECT_TRUE(std::all_of(once.begin(), once.end(), [&](const auto& pair) { return odd(pair.first, pair.second); }));
   EXPECT_EQ(BoxTree(boxes).meeting_pairs(odd), once);
+}
+
+TEST(BoxTree, VisitsWhatIsNearerThanTheBound) {
+  const auto boxes = random_boxes(900, 0.5, 5), queries = random_boxes(60, 0.2, 6);
+  const BoxTree tree(boxes), others(queries);
+  double least_of_all = std::numeric_limits<double>::infinity();
+  for (const ClosedBox& query : queries) {
+    std::vector<int> expected, found;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      const double gap = boxes[i].squared_gap(query);
+      EXPECT_EQ(gap == 0, boxes[i].meets(query));
+      least = std::min(least, gap);
+      if (gap < 0.7) expected.push_back(static_cast<int>(i));
+    }
+    tree.visit_nearer(query, 0.7, [&](int i, double bound) {
+      found.push_back(i);
+      return bound;
+    });
+    std::sort(found.begin(), found.end());
+    EXPECT_EQ(found, expected);
+    double nearest = std::numeric_limits<double>::infinity();
+    tree.visit_nearer(query, nearest,
+                      [&](int i, double) { return nearest = boxes[static_cast<std::size_t>(i)].squared_gap(query); });
+    EXPECT_EQ(nearest, least);
+    least_of_all = std::min(least_of_all, least);
+  }
+  double nearest = std::numeric_limits<double>::infinity();
+  tree.visit_nearer_pairs(others, nearest, [&](int i, int j, double) {
+    return nearest = boxes[static_cast<std::size_t>(i)].squared_gap(queries[static_cast<std::size_t>(j)]);
+  });
+  EXPECT_EQ(nearest, least_of_all);
+}
+
+TEST(BoxTree, VisitsEveryPairNearerThanTheBoundOnce) {
+  const auto first = random_boxes(300, 0.5, 7), second = random_boxes(40, 2, 8);
+  Pairs expected, found;
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (std::size_t j = 0; j < second.size(); ++j)
+      if (first[i].squared_gap(second[j]) < 0.3) expected.emplace_back(static_cast<int>(i), static_cast<int>(j));
+  BoxTree(first).visit_nearer_pairs(BoxTree(second), 0.3, [&](int i, int j, double bound) {
+    found.emplace_back(i, j);
+    return bound;
+  });
+  EXPECT_EQ(sorted(found), expected);
+  BoxTree(first).visit_nearer_pairs(BoxTree({}), 0.3, [](int, int, double) -> double {
+    ADD_FAILURE();
+    return 0;
+  });
 }
 
 }  // namespace
