@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// How the roots of labelled scans stand and how long arches take: bench_arch axes|time SCAN.ply... (labels beside each,
+// as SCAN.json in the form of Teeth3DS). `axes` lays each tooth's root axis beside its neighbours' mean, for crowns
+// alone and for the arch, and the means of each type beside those of Tong et al., Am J Orthod Dentofacial Orthop
+// 2012;141:604. `time` takes arches beside their teeth one after the other.
+#include "common/stopwatch.hpp"
+#include "rhizodont/arch.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+#include "segment/arch_pose.hpp"
+#include "teeth/fdi.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
+
+namespace {
+
+using namespace rhizodont;
+
+constexpr double degrees = 180 / std::numbers::pi;
+
+LabelledScan read_scan(std::filesystem::path path) {
+  LabelledScan scan;
+  scan.mesh = load_mesh(path).mesh;
+  scan.fdi = nlohmann::json::parse(read_file_bytes(path.replace_extension(".json")))["labels"].get<std::vector<int>>();
+  return scan;
+}
+
+/// Root axes by FDI number.
+using Axes = std::map<int, Eigen::Vector3d>;
+
+Axes root_axes(const CompletedArch& arch) {
+  Axes axes;
+  for (const ToothOfArch& tooth : arch.teeth)
+    if (tooth.tooth) axes[tooth.fdi] = long_axes(*tooth.tooth).root.direction;
+  return axes;
+}
+
+Axes axes_alone(const CompletedArch& arch, const CompletionModels& models) {
+  Axes axes;
+  for (const ToothOfArch& tooth : arch.teeth) {
+    CompleteOptions options = ArchOptions::skirt_and_repair();
+    options.fdi = tooth.fdi;
+    try {
+      axes[tooth.fdi] = long_axes(complete_tooth(tooth.crown, models, options)).root.direction;
+    } catch (const Error&) {
+    }
+  }
+  return axes;
+}
+
+/// Place from the patient's right to the left, without gaps for missing teeth.
+std::vector<int> along(const Axes& axes) {
+  std::vector<int> teeth;
+  for (const auto& [fdi, axis] : axes) teeth.push_back(fdi);
+  const auto place = [](int fdi) { return is_right_side(fdi) ? -(fdi % 10) : fdi % 10; };
+  std::sort(teeth.begin(), teeth.end(), [&](int a, int b) { return place(a) < place(b); });
+  return teeth;
+}
+
+/// Angle between each tooth's axis and the mean of its two neighbours', degrees.
+std::vector<std::pair<int, double>> off_neighbours(const Axes& axes) {
+  std::vector<std::pair<int, double>> angles;
+  const std::vector<int> teeth = along(axes);
+  for (std::size_t i = 1; i + 1 < teeth.size(); ++i) {
+    const Eigen::Vector3d mean = (axes.at(teeth[i - 1]) + axes.at(teeth[i + 1])).normalized();
+    angles.emplace_back(teeth[i], degrees * std::acos(std::clamp(mean.dot(axes.at(teeth[i])), -1.0, 1.0)));
+  }
+  return angles;
+}
+
+void print_shares(const char* name, const std::vector<std::pair<int, double>>& angles) {
+  const auto wide = std::count_if(angles.begin(), angles.end(), [](const auto& a) { return a.second > 25; });
+  double sum = 0;
+  for (const auto& a : angles) sum += a.second;
+  fmt::print("{}: {} teeth, mean {:.1f} degrees off their neighbours, {} ({:.1f} %) above 25:", name, angles.size(),
+             sum / static_cast<double>(angles.size()), wide,
+             100.0 * static_cast<double>(wide) / static_cast<double>(angles.size()));
+  for (const auto& [fdi, angle] : angles)
+    if (angle > 25) fmt::print(" {} {:.0f}", fdi, angle);
+  fmt::print("\n");
+}
+
+struct Lean {
+  double angulation = 0, inclination = 0;
+  int teeth = 0;
+};
+
+/// Crown towards mesial and towards the cheek of a root's axis, degrees, against the occlusal direction.
+void add_leans(const Axes& axes, const LabelledScan& scan, const CompletedArch& arch, std::map<int, Lean>& leans) {
+  (void)scan;
+  static const ArchModel model = load_arch_model(default_models_folder() / "arch.safetensors");
+  std::map<int, CrownPlace> places;
+  for (const ToothOfArch& tooth : arch.teeth)
+    if (is_permanent_tooth(tooth.fdi)) places.emplace(tooth.fdi, place_of_crown(tooth.crown));
+  const ArchPose pose = fit_arch(model, places);
+  const auto directions = directions_in_arch(model, pose, places);
+  for (const auto& [fdi, axis] : axes) {
+    const Eigen::Vector3d up = (fdi / 10 <= 2 ? -1 : 1) * pose.rotation.col(1);
+    const auto teeth = along(axes);
+    const auto at = std::find(teeth.begin(), teeth.end(), fdi) - teeth.begin();
+    const int before = teeth[static_cast<std::size_t>(std::max<std::ptrdiff_t>(at - 1, 0))];
+    const int after = teeth[std::min(static_cast<std::size_t>(at) + 1, teeth.size() - 1)];
+    Eigen::Vector3d left = places.at(after).middle - places.at(before).middle;
+    left = (left - up.dot(left) * up).normalized();
+    const Eigen::Vector3d mesial = is_right_side(fdi) ? left : Eigen::Vector3d(-left);
+    Eigen::Vector3d buccal = mesial.cross(up);
+    if (buccal.dot(directions.at(fdi).buccal) < 0) buccal = -buccal;
+    Lean& lean = leans[10 * (fdi / 10 <= 2 ? 1 : 3) + fdi % 10];
+    lean.angulation += degrees * std::atan2(axis.dot(mesial), axis.dot(up));
+    lean.inclination += degrees * std::atan2(axis.dot(buccal), axis.dot(up));
+    ++lean.teeth;
+  }
+}
+
+void axes(const std::vector<std::filesystem::path>& scans, const CompletionModels& models) {
+  std::vector<std::pair<int, double>> alone, together;
+  std::map<int, Lean> leans, leans_alone;
+  int teeth = 0, rooted = 0;
+  for (const auto& path : scans) {
+    const LabelledScan scan = read_scan(path);
+    const CompletedArch arch = complete_arch(scan, models);
+    for (const ToothOfArch& tooth : arch.teeth) {
+      ++teeth;
+      rooted += tooth.tooth.has_value();
+      if (!tooth.tooth)
+        fmt::print("{}: {}: {}\n", path.stem().string(), tooth.fdi, tooth.refusal);
+      else if (tooth.tooth->record.root.source != RootSource::network)
+        fmt::print("{}: {}: root {}\n", path.stem().string(), tooth.fdi,
+                   static_cast<int>(tooth.tooth->record.root.source));
+    }
+    const Axes in_arch = root_axes(arch), on_their_own = axes_alone(arch, models);
+    const auto a = off_neighbours(on_their_own), t = off_neighbours(in_arch);
+    alone.insert(alone.end(), a.begin(), a.end());
+    together.insert(together.end(), t.begin(), t.end());
+    add_leans(in_arch, scan, arch, leans);
+    add_leans(on_their_own, scan, arch, leans_alone);
+    print_shares((path.stem().string() + " alone").c_str(), a);
+    print_shares((path.stem().string() + " arch ").c_str(), t);
+  }
+  fmt::print("{} of {} teeth rooted\n", rooted, teeth);
+  print_shares("all, crowns alone", alone);
+  print_shares("all, in the arch ", together);
+  fmt::print("type  teeth  angulation (alone)  inclination (alone)\n");
+  for (const auto& [type, lean] : leans) {
+    const Lean& other = leans_alone[type];
+    fmt::print("{:>4}  {:>5}  {:>8.1f} ({:>5.1f})  {:>8.1f} ({:>5.1f})\n", type, lean.teeth,
+               lean.angulation / lean.teeth, other.angulation / other.teeth, lean.inclination / lean.teeth,
+               other.inclination / other.teeth);
+  }
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  const std::vector<std::filesystem::path> scans(words + std::min(count, 2), words + count);
+  if (scans.empty()) {
+    fmt::print(stderr, "usage: bench_arch axes|time SCAN.ply...\n");
+    return 2;
+  }
+  const CompletionModels models = CompletionModels::load(default_models_folder());
+  axes(scans, models);
+  return 0;
+}

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "rhizodont/complete.hpp"
+#include "rhizodont/mesh.hpp"
+#include "rhizodont/models.hpp"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rhizodont {
+
+/// A scan of one or both jaws whose teeth are known.
+struct LabelledScan {
+  TriangleMesh mesh;
+  std::vector<int> fdi;  ///< per vertex the number of its tooth, 11-48 or 51-85 (milk); 0 is gum
+};
+
+struct ArchOptions {
+  /// For every tooth. Number, directions and length are the arch's to say and must be unset here.
+  CompleteOptions tooth = skirt_and_repair();
+  /// FDI number -> mm, [shortest_root_mm, longest_root_mm]: lengths measured on X-rays. Those teeth get them, and what
+  /// is expected of the others moves with them.
+  std::map<int, double> root_lengths;
+
+  /// What crowns cut from a scan by their labels need: skirts dropped, defects mended.
+  static CompleteOptions skirt_and_repair();
+};
+
+/// One tooth of a scan.
+struct ToothOfArch {
+  int fdi = 0;
+  TriangleMesh crown;                   ///< as cut from the scan
+  std::vector<int> scan_vertices;       ///< of the scan, for each vertex of `crown`
+  std::optional<CompletedTooth> tooth;  ///< its record refers to `crown`; not there if it was refused
+  std::string refusal;                  ///< why there is no tooth; empty if there is one
+};
+
+/// A line through a part of a tooth, in the input's frame and unit.
+struct LongAxis {
+  Point from, to;  ///< from the neck: of the crown to its top, of the root to its end
+  /// Unit, towards the crown's top in both.
+  Eigen::Vector3d direction;
+};
+
+/// Long axes of a tooth's crown and root, from the middle of the crown's border.
+struct LongAxes {
+  LongAxis crown, root;
+};
+
+/// The crown's axis is its growth axis, up to its highest point; the root's goes to the mean of what lies in the lowest
+/// third of the root, so that several roots count together.
+LongAxes long_axes(const CompletedTooth& tooth);
+
+struct CompletedArch {
+  std::vector<ToothOfArch> teeth;  ///< by FDI number
+  TriangleMesh gum;                ///< what is no tooth's in the scan
+  std::vector<std::string> notes;  ///< sentences on the arch as a whole
+};
+
+/// Called after each tooth: how many are done, of how many, and the last one's number.
+using ArchProgress = std::function<void(int done, int teeth, int fdi)>;
+
+/// Every tooth of a labelled scan with its root. Each stands as its place among the others tells where at least two
+/// teeth of its jaw are there. A tooth that is refused (milk teeth always are: no model knows them) does not stop the
+/// others. The same for any number of threads.
+/// @param progress  never called by two threads at once; what it throws stops the work and comes through
+/// Throws InputError for a scan without teeth or of another size than an arch, UsageError for options out of range, for
+/// lengths of teeth that are not there, and where the models' folder lacks what is needed.
+CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& models, const ArchOptions& options = {},
+                            const ArchProgress& progress = {});
+
+}  // namespace rhizodont

@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+// "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", figure 1 and section 4.1: from a
+// segmented scan to whole teeth. What a person's lengths say of each other: person_lengths.cpp.
+#include "arch/person_lengths.hpp"
+#include "mesh/adjacency.hpp"
+#include "mesh/geometry.hpp"
+#include "pipeline/models.hpp"
+#include "pipeline/prepared_tooth.hpp"
+#include "rhizodont/arch.hpp"
+#include "rhizodont/error.hpp"
+#include "segment/arch_pose.hpp"
+#include "segment/cut_crowns.hpp"
+#include "teeth/fdi.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <utility>
+
+namespace rhizodont {
+namespace {
+
+/// Half of an interval that holds 80 % of a Gaussian, in deviations.
+constexpr double half_of_80_percent = 1.2816;
+
+bool is_upper(int fdi) { return fdi / 10 <= 2; }
+
+void require_in_range(const ArchOptions& options) {
+  require_options_in_range(options.tooth);
+  if (options.tooth.fdi || options.tooth.directions || options.tooth.steering.length_mm)
+    throw UsageError(
+        "Numbers, directions and root lengths are each tooth's own: they cannot be set for the whole arch.");
+  for (const auto& [fdi, mm] : options.root_lengths)
+    if (!(mm >= shortest_root_mm && mm <= longest_root_mm))
+      throw UsageError(fmt::format("A root length of {} mm for tooth {} is out of its range, {} to {} mm.", mm, fdi,
+                                   shortest_root_mm, longest_root_mm));
+}
+
+/// Crowns of a labelled scan stand within an arch: 20 mm (one tooth) to 150 mm across.
+void require_size_of_arch(const std::vector<ToothOfArch>& teeth, double millimetres_per_unit) {
+  Eigen::AlignedBox3d box;
+  for (const ToothOfArch& tooth : teeth) box.extend(bounding_box(tooth.crown.vertices));
+  const double across = millimetres_per_unit * box.diagonal().norm();
+  constexpr double least = 2, most = 150;
+  if (across >= least && across <= most) return;
+  throw InputError(fmt::format(
+      "The teeth of this scan are {:.4g} mm across from the first to the last; an arch has 20 to 110. Is the file in "
+      "{}? Then say so with --unit.",
+      across, across < least ? "metres, centimetres or inches" : "micrometres"));
+}
+
+std::vector<ToothOfArch> cut(const LabelledScan& scan) {
+  std::vector<ToothOfArch> teeth;
+  for (auto& [fdi, part] : cut_crowns(scan.mesh, scan.fdi)) {
+    ToothOfArch& tooth = teeth.emplace_back();
+    tooth.fdi = fdi;
+    tooth.crown = std::move(part.mesh);
+    tooth.scan_vertices = std::move(part.old_vertices);
+  }
+  if (teeth.empty()) throw InputError("No triangle of the scan belongs to a tooth.");
+  return teeth;
+}
+
+/// How the permanent teeth stand, for jaws of at least two.
+std::map<int, ToothDirections> directions_of(const std::vector<ToothOfArch>& teeth, const ArchModel& model,
+                                             double millimetres_per_unit) {
+  std::map<int, ToothDirections> directions;
+  for (const bool upper : {true, false}) {
+    std::map<int, CrownPlace> places;
+    for (const ToothOfArch& tooth : teeth) {
+      if (!is_permanent_tooth(tooth.fdi) || is_upper(tooth.fdi) != upper) continue;
+      CrownPlace place = place_of_crown(tooth.crown);
+      place.middle *= millimetres_per_unit;
+      places.emplace(tooth.fdi, place);
+    }
+    if (places.size() >= 2) directions.merge(directions_in_arch(model, fit_arch(model, places), places));
+  }
+  return directions;
+}
+
+/// Counts teeth and tells of them, one thread at a time.
+class Count {
+ public:
+  Count(const ArchProgress& progress, std::size_t teeth) : progress_(progress), teeth_(static_cast<int>(teeth)) {}
+  void one_more(int fdi) {
+    const std::lock_guard<std::mutex> guard(mutex_);
+    ++done_;
+    if (progress_) progress_(done_, teeth_, fdi);
+  }
+
+ private:
+  const ArchProgress& progress_;
+  std::mutex mutex_;
+  int done_ = 0, teeth_;
+};
+
+/// Runs what one tooth needs; where that gives up, the tooth says why.
+template <class Work>
+void for_tooth(ToothOfArch& tooth, const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    tooth.tooth.reset();
+    tooth.refusal = error.what();
+  }
+}
+
+using Prepared = std::vector<std::optional<PreparedTooth>>;
+
+Prepared complete_each(std::vector<ToothOfArch>& teeth, const std::map<int, ToothDirections>& directions,
+                       const CompletionModels& models, const ArchOptions& options, const ArchProgress& progress) {
+  Prepared prepared(teeth.size());
+  Count count(progress, teeth.size());
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, teeth.size(), 1),
+      [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          ToothOfArch& tooth = teeth[i];
+          for_tooth(tooth, [&] {
+            if (!is_permanent_tooth(tooth.fdi))
+              throw InputError(fmt::format("Tooth {} is a milk tooth, and no model knows their roots.", tooth.fdi));
+            CompleteOptions own = options.tooth;
+            own.fdi = tooth.fdi;
+            own.threads = 0;
+            if (const auto found = directions.find(tooth.fdi); found != directions.end())
+              own.directions = found->second;
+            prepared[i] = prepare_tooth(tooth.crown, models, own);
+            tooth.tooth = finish_tooth(*prepared[i], own.steering, own.transition);
+          });
+          count.one_more(tooth.fdi);
+        }
+      },
+      tbb::simple_partitioner());
+  return prepared;
+}
+
+/// Moves the lengths of all teeth with those that were measured.
+void heed_measured(std::vector<ToothOfArch>& teeth, const Prepared& prepared, const ArchOptions& options,
+                   std::vector<std::string>& notes) {
+  if (options.root_lengths.empty()) return;
+  std::map<int, LengthExpectation> expected;
+  for (const ToothOfArch& tooth : teeth) {
+    if (!tooth.tooth) continue;
+    const RootRecord& root = tooth.tooth->record.root;
+    // Weights that were never calibrated state no interval; roots of one type vary by 1 to 2 mm.
+    const double deviation =
+        root.interval ? (root.interval->length_high_mm - root.interval->length_low_mm) / (2 * half_of_80_percent) : 1.5;
+    expected[tooth.fdi] = {root.length_mm, std::max(deviation, 0.1)};
+  }
+  std::map<int, double> measured;
+  for (const auto& [fdi, mm] : options.root_lengths) {
+    const auto found = std::find_if(teeth.begin(), teeth.end(), [&](const ToothOfArch& t) { return t.fdi == fdi; });
+    if (found == teeth.end())
+      throw UsageError(fmt::format("A root length was given for tooth {}, which the scan does not have.", fdi));
+    if (found->tooth) {
+      measured[fdi] = mm;
+    } else {
+      notes.push_back(fmt::format("The root length given for tooth {} tells nothing: the tooth has no root.", fdi));
+    }
+  }
+  const std::map<int, LengthExpectation> lengths = given_measured(expected, measured);
+  tbb::parallel_for(std::size_t{0}, teeth.size(), [&](std::size_t i) {
+    ToothOfArch& tooth = teeth[i];
+    if (!tooth.tooth) return;
+    const LengthExpectation length = lengths.at(tooth.fdi);
+    for_tooth(tooth, [&] {
+      RootSteering steering = options.tooth.steering;
+      steering.length_mm = std::clamp(length.mm, shortest_root_mm, longest_root_mm);
+      const std::optional<RootInterval> alone = tooth.tooth->record.root.interval;
+      tooth.tooth = finish_tooth(*prepared[i], steering, options.tooth.transition);
+      if (!alone || measured.contains(tooth.fdi)) return;
+      const double half = half_of_80_percent * length.deviation_mm, mm = tooth.tooth->record.root.length_mm;
+      tooth.tooth->record.root.interval = {std::max(mm - half, shortest_root_mm), std::min(mm + half, longest_root_mm),
+                                           alone->apex_radius_mm};
+    });
+  });
+}
+
+}  // namespace
+
+CompleteOptions ArchOptions::skirt_and_repair() {
+  CompleteOptions options;
+  options.skirt = 0.5;
+  options.repair = true;
+  return options;
+}
+
+CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& models, const ArchOptions& options,
+                            const ArchProgress& progress) {
+  require_in_range(options);
+  const CompletionModels::Content& content = *content_of(models);
+  if (!content.arch) throw UsageError("The models' folder has no model of the arch (arch.safetensors).");
+  return with_threads(options.tooth.threads, [&] {
+    CompletedArch arch;
+    arch.teeth = cut(scan);
+    arch.gum = gum_of(scan.mesh, scan.fdi);
+    require_size_of_arch(arch.teeth, options.tooth.millimetres_per_unit);
+    const std::map<int, ToothDirections> directions =
+        directions_of(arch.teeth, *content.arch, options.tooth.millimetres_per_unit);
+    const Prepared prepared = complete_each(arch.teeth, directions, models, options, progress);
+    heed_measured(arch.teeth, prepared, options, arch.notes);
+    return arch;
+  });
+}
+
+}  // namespace rhizodont
