@@ -10,6 +10,7 @@ namespace rhizodont::command_line {
 // ends by returning (exit code 0), by throwing rhizodont::Error (its code; the sentence goes to standard error), or by
 // `exit_with(code)` where everything to be said has been printed.
 
+void add_arch_command(CLI::App& app);
 void add_complete_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_check_command(CLI::App& app);

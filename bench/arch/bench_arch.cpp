@@ -105,7 +105,7 @@ void add_leans(const Axes& axes, const LabelledScan& scan, const CompletedArch& 
   std::map<int, CrownPlace> places;
   for (const ToothOfArch& tooth : arch.teeth)
     if (is_permanent_tooth(tooth.fdi)) places.emplace(tooth.fdi, place_of_crown(tooth.crown));
-  const ArchPose pose = fit_arch(model, places);
+  const ArchPose pose = fit_arch(model, places).value();
   const auto directions = directions_in_arch(model, pose, places);
   for (const auto& [fdi, axis] : axes) {
     const Eigen::Vector3d up = (fdi / 10 <= 2 ? -1 : 1) * pose.rotation.col(1);

@@ -59,6 +59,9 @@ LongAxes long_axes(const CompletedTooth& tooth);
 struct CompletedArch {
   std::vector<ToothOfArch> teeth;  ///< by FDI number
   TriangleMesh gum;                ///< what is no tooth's in the scan
+  /// Directions of the scan to those of the patient: x to the left, y up, z to the front. Not there where the teeth
+  /// leave it open; of a scan of both jaws the lower jaw's.
+  std::optional<Eigen::Matrix3d> upright;
   std::vector<std::string> notes;  ///< sentences on the arch as a whole
 };
 

@@ -16,7 +16,8 @@ enum class ErrorCode : int {
   unusable_input = 3,  ///< the file or the mesh in it cannot be used
   no_result = 4,       ///< no result was found that keeps the promises
   internal = 5,        ///< a fault of the program
-  unwritable = 6,      ///< a result cannot be written where it should go
+  partial = 6,         ///< of several teeth some have no result
+  unwritable = 7,      ///< a result cannot be written where it should go
 };
 
 /// What the ids of an error are.

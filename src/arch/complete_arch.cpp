@@ -67,9 +67,9 @@ std::vector<ToothOfArch> cut(const LabelledScan& scan) {
   return teeth;
 }
 
-/// How the permanent teeth stand, for jaws of at least two.
+/// How the permanent teeth stand, in jaws with enough of them; `upright`: as CompletedArch's.
 std::map<int, ToothDirections> directions_of(const std::vector<ToothOfArch>& teeth, const ArchModel& model,
-                                             double millimetres_per_unit) {
+                                             double millimetres_per_unit, std::optional<Eigen::Matrix3d>& upright) {
   std::map<int, ToothDirections> directions;
   for (const bool upper : {true, false}) {
     std::map<int, CrownPlace> places;
@@ -79,7 +79,11 @@ std::map<int, ToothDirections> directions_of(const std::vector<ToothOfArch>& tee
       place.middle *= millimetres_per_unit;
       places.emplace(tooth.fdi, place);
     }
-    if (places.size() >= 2) directions.merge(directions_in_arch(model, fit_arch(model, places), places));
+    if (places.size() < 2) continue;
+    const std::optional<ArchPose> pose = fit_arch(model, places);
+    if (!pose) continue;
+    upright = pose->rotation.transpose();
+    directions.merge(directions_in_arch(model, *pose, places));
   }
   return directions;
 }
@@ -111,6 +115,50 @@ void for_tooth(ToothOfArch& tooth, const Work& work) {
   }
 }
 
+/// How a tooth is tried, one way after the other, with what the user is to know where it is not the first.
+struct Attempt {
+  CompleteOptions options;
+  std::string warning;
+};
+
+std::vector<Attempt> attempts_for(int fdi, const std::map<int, ToothDirections>& directions,
+                                  const CompleteOptions& tooth) {
+  Attempt first{tooth, ""};
+  first.options.fdi = fdi;
+  first.options.threads = 0;
+  std::vector<Attempt> attempts;
+  if (const auto found = directions.find(fdi); found != directions.end()) {
+    attempts.push_back(first);
+    attempts.back().options.directions = found->second;
+    first.warning =
+        "No root could be made with the tooth standing as its neighbours do; it stands as its border tells.";
+  }
+  attempts.push_back(first);
+  if (tooth.skirt) {
+    first.options.skirt.reset();
+    first.warning = "No root could be made without what seemed to be gum or web on the crown; that was kept.";
+    attempts.push_back(first);
+  }
+  return attempts;
+}
+
+/// The first attempt that gives a tooth. Throws as the first one where none does.
+void complete_one(ToothOfArch& tooth, const std::vector<Attempt>& attempts, const CompletionModels& models,
+                  std::optional<PreparedTooth>& prepared) {
+  std::exception_ptr refused;
+  for (const Attempt& attempt : attempts) {
+    try {
+      prepared = prepare_tooth(tooth.crown, models, attempt.options);
+      tooth.tooth = finish_tooth(*prepared, attempt.options.steering, attempt.options.transition);
+      if (!attempt.warning.empty()) tooth.tooth->record.warnings.push_back(attempt.warning);
+      return;
+    } catch (const Error&) {
+      if (!refused) refused = std::current_exception();
+    }
+  }
+  std::rethrow_exception(refused);
+}
+
 using Prepared = std::vector<std::optional<PreparedTooth>>;
 
 Prepared complete_each(std::vector<ToothOfArch>& teeth, const std::map<int, ToothDirections>& directions,
@@ -125,13 +173,7 @@ Prepared complete_each(std::vector<ToothOfArch>& teeth, const std::map<int, Toot
           for_tooth(tooth, [&] {
             if (!is_permanent_tooth(tooth.fdi))
               throw InputError(fmt::format("Tooth {} is a milk tooth, and no model knows their roots.", tooth.fdi));
-            CompleteOptions own = options.tooth;
-            own.fdi = tooth.fdi;
-            own.threads = 0;
-            if (const auto found = directions.find(tooth.fdi); found != directions.end())
-              own.directions = found->second;
-            prepared[i] = prepare_tooth(tooth.crown, models, own);
-            tooth.tooth = finish_tooth(*prepared[i], own.steering, own.transition);
+            complete_one(tooth, attempts_for(tooth.fdi, directions, options.tooth), models, prepared[i]);
           });
           count.one_more(tooth.fdi);
         }
@@ -202,7 +244,7 @@ CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& mo
     arch.gum = gum_of(scan.mesh, scan.fdi);
     require_size_of_arch(arch.teeth, options.tooth.millimetres_per_unit);
     const std::map<int, ToothDirections> directions =
-        directions_of(arch.teeth, *content.arch, options.tooth.millimetres_per_unit);
+        directions_of(arch.teeth, *content.arch, options.tooth.millimetres_per_unit, arch.upright);
     const Prepared prepared = complete_each(arch.teeth, directions, models, options, progress);
     heed_measured(arch.teeth, prepared, options, arch.notes);
     return arch;

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // How crowns stand in the arch: Chen Y. et al., "Automatic 3D Teeth Reconstruction from Five Intra-oral Photos Using
-// Parametric Teeth Model", 2023, whose mean crowns stand in place.
+// Parametric Teeth Model", 2023, whose mean crowns stand in place. Whole teeth's axes, where published: H. Tong et al.,
+// "Mesiodistal angulation and faciolingual inclination of each whole tooth in 3-dimensional space in patients with
+// near-normal occlusion", Am J Orthod Dentofacial Orthop 141, 2012 (76 people, cone-beam computed tomography).
 #include "families/mean_arch.hpp"
 
 #include "completion/registration.hpp"
@@ -14,7 +16,15 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <map>
+#include <numbers>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -65,6 +75,42 @@ ArchTooth tooth_of_left(const std::filesystem::path& folder, const Atlas& atlas,
       Eigen::Matrix3d::Zero()};
 }
 
+/// Degrees against the occlusal direction: of the crown towards mesial, and towards the cheek. What is not published
+/// is as the mean crown stands.
+struct PublishedLean {
+  double angulation = 0;
+  std::optional<double> inclination;
+};
+
+/// Of teeth 1 to 7 of each jaw. Published are, of the angulations, upper 1, 3, 6, 7 and lower 1 and 7, of the
+/// inclinations 1 and 5; between them they rise and fall steadily, and so they do here.
+PublishedLean published_lean(int fdi) {
+  constexpr std::array<double, 7> upper_angulation{6, 8.5, 11, 7.5, 4, 0.5, -6},
+      lower_angulation{0, 0, 3.5, 7, 10.5, 14, 17.5};
+  constexpr std::array<double, 5> upper_inclination{33.5, 25, 17, 8.5, 0}, lower_inclination{26.5, 20, 13, 6.5, 0};
+  const bool upper = fdi / 10 <= 2;
+  const auto place = static_cast<std::size_t>(fdi % 10 - 1);
+  PublishedLean lean{(upper ? upper_angulation : lower_angulation)[place], {}};
+  if (place < upper_inclination.size()) lean.inclination = (upper ? upper_inclination : lower_inclination)[place];
+  return lean;
+}
+
+/// A tooth of the left side leaned as published, against the line between its neighbours in the arch.
+void lean_as_published(ArchTooth& tooth, int fdi, const Eigen::Vector3d& along) {
+  const Eigen::Vector3d up(0, fdi / 10 <= 2 ? -1 : 1, 0);
+  const Eigen::Vector3d mesial = -Eigen::Vector3d(along.x(), 0, along.z()).normalized();
+  const Eigen::Vector3d cheek(mesial.z(), 0, -mesial.x());
+  const auto tangent = [&](const Eigen::Vector3d& side, const std::optional<double>& published) {
+    if (published) return std::tan(*published * std::numbers::pi / 180);
+    return tooth.directions.occlusal.dot(side) / tooth.directions.occlusal.dot(up);
+  };
+  const PublishedLean lean = published_lean(fdi);
+  const Eigen::Vector3d occlusal =
+      (up + tangent(mesial, lean.angulation) * mesial + tangent(cheek, lean.inclination) * cheek).normalized();
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(tooth.directions.occlusal, occlusal);
+  tooth.directions = {occlusal, turn * tooth.directions.buccal};
+}
+
 Eigen::Vector3d mirror(const Eigen::Vector3d& v) { return {-v.x(), v.y(), v.z()}; }
 
 }  // namespace
@@ -73,7 +119,7 @@ ArchModel make_arch_model(const Atlas& atlas, const std::filesystem::path& folde
   const std::map<int, Eigen::Matrix3d> covariances = turn_covariances(folder / "arch_covariances.safetensors");
   // Turns about y and z change their sense in a mirror.
   const Eigen::DiagonalMatrix<double, 3> sense(1, -1, -1);
-  ArchModel model;
+  std::map<int, ArchTooth> left_side;
   for (const int left_quadrant : {2, 3}) {
     const int right_quadrant = left_quadrant == 2 ? 1 : 4;
     for (int place = 1; place <= 7; ++place) {
@@ -85,13 +131,19 @@ ArchModel make_arch_model(const Atlas& atlas, const std::filesystem::path& folde
       const Eigen::Vector3d buccal = a.directions.buccal + b.directions.buccal;
       both.directions.buccal = (buccal - both.directions.occlusal.dot(buccal) * both.directions.occlusal).normalized();
       both.turn_covariance = 0.5 * (covariances.at(left) + sense * covariances.at(right) * sense);
-      ArchTooth mirrored = both;
-      mirrored.place = mirror(both.place);
-      mirrored.directions = {mirror(both.directions.occlusal), mirror(both.directions.buccal)};
-      mirrored.turn_covariance = sense * both.turn_covariance * sense;
-      model.teeth.emplace(left, both);
-      model.teeth.emplace(right, mirrored);
+      left_side.emplace(left, both);
     }
+  }
+  ArchModel model;
+  for (auto [left, tooth] : left_side) {
+    const Point before = left % 10 == 1 ? mirror(tooth.place) : left_side.at(left - 1).place;
+    const Point after = left % 10 == 7 ? tooth.place : left_side.at(left + 1).place;
+    lean_as_published(tooth, left, after - before);
+    const int right = left / 10 == 2 ? left - 10 : left + 10;
+    model.teeth.emplace(left, tooth);
+    model.teeth.emplace(right, ArchTooth{mirror(tooth.place),
+                                         {mirror(tooth.directions.occlusal), mirror(tooth.directions.buccal)},
+                                         sense * tooth.turn_covariance * sense});
   }
   return model;
 }

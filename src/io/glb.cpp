@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// glTF 2.0 in its binary form, for viewers: one mesh, coloured by where each vertex comes from.
+// glTF 2.0 in its binary form, for viewers: a mesh coloured by where each vertex comes from, or several, each in a
+// colour.
 #include "io/append_bytes.hpp"
 #include "io/formats.hpp"
+#include "io/scene.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
@@ -11,6 +13,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
 
 namespace rhizodont {
 namespace {
@@ -27,28 +30,38 @@ constexpr std::array<std::array<std::uint8_t, 4>, 3> source_colours{
 
 class GlbWriter {
  public:
-  explicit GlbWriter(const MeshFile& file) : file_(file), mesh_(file.mesh) {}
-
-  std::string write() {
+  /// A mesh with its attributes; `colour`: of its material, where it has one of its own.
+  void add(const std::string& name, const MeshFile& file, const std::optional<std::array<float, 3>>& colour) {
     Json attributes;
-    attributes["POSITION"] = add_positions();
-    attributes["NORMAL"] = add_normals();
-    if (file_.vertex_attributes.contains(source_attribute)) add_sources(attributes);
-    const int indices = add_indices();
+    attributes["POSITION"] = add_positions(file.mesh);
+    attributes["NORMAL"] = add_normals(file.mesh);
+    if (!colour && file.vertex_attributes.contains(source_attribute)) add_sources(file, attributes);
+    const int indices = add_indices(file.mesh);
+    const std::size_t number = nodes_.size();
     // glTF counts in metres; the scale of the node leaves the coordinates themselves as they are.
-    json_["asset"] = {{"version", "2.0"}, {"generator", "Rhizodont"}};
-    json_["scene"] = 0;
-    json_["scenes"] = Json::array({{{"nodes", {0}}}});
-    json_["nodes"] = Json::array({{{"mesh", 0}, {"name", "tooth"}, {"scale", {0.001, 0.001, 0.001}}}});
-    json_["materials"] = Json::array(
-        {{{"name", "tooth"}, {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}}}}});
-    json_["meshes"] = Json::array(
-        {{{"primitives",
-           Json::array({{{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}}})}}});
-    json_["accessors"] = accessors_;
-    json_["bufferViews"] = views_;
-    json_["buffers"] = Json::array({{{"byteLength", data_.size()}}});
-    return assemble();
+    nodes_.push_back({{"mesh", number}, {"name", name}, {"scale", {0.001, 0.001, 0.001}}});
+    Json material{{"name", name}, {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}}}};
+    if (colour) material["pbrMetallicRoughness"]["baseColorFactor"] = {(*colour)[0], (*colour)[1], (*colour)[2], 1.0F};
+    materials_.push_back(std::move(material));
+    meshes_.push_back(
+        {{"primitives",
+          Json::array({{{"attributes", attributes}, {"indices", indices}, {"material", number}, {"mode", 4}}})}});
+  }
+
+  std::string bytes() const {
+    Json nodes = Json::array();
+    for (std::size_t i = 0; i < nodes_.size(); ++i) nodes.push_back(i);
+    Json json;
+    json["asset"] = {{"version", "2.0"}, {"generator", "Rhizodont"}};
+    json["scene"] = 0;
+    json["scenes"] = Json::array({{{"nodes", nodes}}});
+    json["nodes"] = nodes_;
+    json["materials"] = materials_;
+    json["meshes"] = meshes_;
+    json["accessors"] = accessors_;
+    json["bufferViews"] = views_;
+    json["buffers"] = Json::array({{{"byteLength", data_.size()}}});
+    return assemble(json);
   }
 
  private:
@@ -63,27 +76,27 @@ class GlbWriter {
     return static_cast<int>(accessors_.size()) - 1;
   }
 
-  int add_positions() {
+  int add_positions(const TriangleMesh& mesh) {
     const std::size_t start = data_.size();
-    for (const Point& p : mesh_.vertices)
+    for (const Point& p : mesh.vertices)
       for (int i = 0; i < 3; ++i) append_bytes(data_, static_cast<float>(p[i]));
-    const Eigen::AlignedBox3d box = bounding_box(mesh_.vertices);
+    const Eigen::AlignedBox3d box = bounding_box(mesh.vertices);
     const auto corner = [](const Point& p) { return Json{p.x(), p.y(), p.z()}; };
-    return add_accessor(start, target_vertices, type_float, mesh_.vertices.size(), "VEC3",
+    return add_accessor(start, target_vertices, type_float, mesh.vertices.size(), "VEC3",
                         {{"min", corner(box.min())}, {"max", corner(box.max())}});
   }
 
-  int add_normals() {
+  int add_normals(const TriangleMesh& mesh) {
     const std::size_t start = data_.size();
-    for (const Eigen::Vector3d& n : vertex_normals(mesh_)) {
+    for (const Eigen::Vector3d& n : vertex_normals(mesh)) {
       const Eigen::Vector3f unit = (n.isZero() ? Eigen::Vector3d::UnitZ().eval() : n).cast<float>();
       for (int i = 0; i < 3; ++i) append_bytes(data_, unit[i]);
     }
-    return add_accessor(start, target_vertices, type_float, mesh_.vertices.size(), "VEC3");
+    return add_accessor(start, target_vertices, type_float, mesh.vertices.size(), "VEC3");
   }
 
-  void add_sources(Json& attributes) {
-    const std::vector<double>& sources = file_.vertex_attributes.at(source_attribute).values;
+  void add_sources(const MeshFile& file, Json& attributes) {
+    const std::vector<double>& sources = file.vertex_attributes.at(source_attribute).values;
     std::size_t start = data_.size();
     for (const double source : sources)
       for (const std::uint8_t part : source_colours[source >= 0 && source < 3 ? static_cast<std::size_t>(source) : 0])
@@ -96,15 +109,15 @@ class GlbWriter {
     attributes["_SOURCE"] = add_accessor(start, target_vertices, type_uint8, sources.size(), "SCALAR");
   }
 
-  int add_indices() {
+  int add_indices(const TriangleMesh& mesh) {
     const std::size_t start = data_.size();
-    for (const Triangle& triangle : mesh_.triangles)
+    for (const Triangle& triangle : mesh.triangles)
       for (const std::int32_t v : triangle) append_bytes(data_, static_cast<std::uint32_t>(v));
-    return add_accessor(start, target_indices, type_uint32, 3 * mesh_.triangles.size(), "SCALAR");
+    return add_accessor(start, target_indices, type_uint32, 3 * mesh.triangles.size(), "SCALAR");
   }
 
-  std::string assemble() const {
-    std::string text = json_.dump();
+  std::string assemble(const Json& json) const {
+    std::string text = json.dump();
     text.resize((text.size() + 3) / 4 * 4, ' ');
     std::string bytes = "glTF";
     append_bytes(bytes, std::uint32_t{2});
@@ -116,10 +129,9 @@ class GlbWriter {
     return bytes + data_;
   }
 
-  const MeshFile& file_;
-  const TriangleMesh& mesh_;
   std::string data_;
-  Json json_, accessors_ = Json::array(), views_ = Json::array();
+  Json nodes_ = Json::array(), materials_ = Json::array(), meshes_ = Json::array(), accessors_ = Json::array(),
+       views_ = Json::array();
 };
 
 }  // namespace
@@ -128,7 +140,19 @@ std::string write_glb(const MeshFile& file) {
   if (!coordinates_fit_float(file.mesh))
     throw UsageError(
         "GLB files hold single precision only, and this mesh has coordinates that need double; use PLY or OBJ");
-  return GlbWriter(file).write();
+  GlbWriter writer;
+  writer.add("tooth", file, std::nullopt);
+  return writer.bytes();
+}
+
+std::string scene_bytes(const std::vector<SceneNode>& nodes) {
+  GlbWriter writer;
+  for (const SceneNode& node : nodes) {
+    MeshFile file;
+    file.mesh = *node.mesh;
+    writer.add(node.name, file, node.colour);
+  }
+  return writer.bytes();
 }
 
 }  // namespace rhizodont

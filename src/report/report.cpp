@@ -159,6 +159,8 @@ const char* kind_of(ErrorCode code) {
       return "unusable input";
     case ErrorCode::no_result:
       return "no result that keeps the promises";
+    case ErrorCode::partial:
+      return "some teeth have no result";
     case ErrorCode::unwritable:
       return "results cannot be written";
     case ErrorCode::internal:

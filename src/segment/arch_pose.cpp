@@ -39,7 +39,7 @@ struct Pair {
   double weight = 1;
 };
 
-ArchPose similarity_of(const std::vector<Pair>& pairs) {
+std::optional<ArchPose> similarity_of(const std::vector<Pair>& pairs) {
   double total = 0;
   Eigen::Vector3d model_mean = Eigen::Vector3d::Zero(), scan_mean = Eigen::Vector3d::Zero();
   for (const Pair& p : pairs) {
@@ -56,6 +56,8 @@ ArchPose similarity_of(const std::vector<Pair>& pairs) {
     spread += p.weight * (p.model - model_mean).squaredNorm();
   }
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(correlation, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  constexpr double least_spread = 0.01;  // across a row of teeth, of that along it
+  if (!(svd.singularValues()(1) > least_spread * svd.singularValues()(0))) return std::nullopt;
   const Eigen::Vector3d sign(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
   ArchPose pose;
   pose.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
@@ -83,10 +85,10 @@ std::vector<int> in_order(const std::map<int, CrownPlace>& crowns) {
 }  // namespace
 
 CrownPlace place_of_crown(const TriangleMesh& open_crown) {
-  return {area_centroid(open_crown), area_vector(open_crown)};
+  return {area_centroid(open_crown), area_vector(open_crown), surface_area(open_crown)};
 }
 
-ArchPose fit_arch(const ArchModel& model, const std::map<int, CrownPlace>& crowns) {
+std::optional<ArchPose> fit_arch(const ArchModel& model, const std::map<int, CrownPlace>& crowns) {
   require_one_jaw(crowns);
   // mm: as far above its middle as a crown is wide, an axis that leans by 10 degrees counts as a middle 1.5 mm off.
   constexpr double along_axis = 8, axis_weight = 0.5, most_trusted_mm = 1.5;
@@ -95,16 +97,16 @@ ArchPose fit_arch(const ArchModel& model, const std::map<int, CrownPlace>& crown
     const ArchTooth& tooth = model.teeth.at(fdi);
     pairs.push_back({tooth.place, place.middle, 1});
     const double length = place.area_vector.norm();
-    if (!(length > 0)) continue;
+    if (!(length > 1e-3 * place.area)) continue;  // closed
     pairs.push_back({tooth.place + along_axis * tooth.directions.occlusal,
                      place.middle + along_axis / length * place.area_vector, axis_weight});
   }
   const std::vector<Pair> given = pairs;
-  ArchPose pose = similarity_of(pairs);
+  std::optional<ArchPose> pose = similarity_of(pairs);
   constexpr int rounds = 10;
-  for (int round = 0; round < rounds; ++round) {
+  for (int round = 0; pose && round < rounds; ++round) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      const double off = (pose.scale * pose.rotation * pairs[i].model + pose.shift - pairs[i].scan).norm();
+      const double off = (pose->scale * pose->rotation * pairs[i].model + pose->shift - pairs[i].scan).norm();
       pairs[i].weight = given[i].weight * std::min(1.0, most_trusted_mm / std::max(off, 1e-12));
     }
     pose = similarity_of(pairs);

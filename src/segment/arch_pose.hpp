@@ -8,13 +8,16 @@
 #include <Eigen/Core>
 
 #include <map>
+#include <optional>
 
 namespace rhizodont {
 
 /// Where a crown is and which way it faces, as its surface alone tells.
 struct CrownPlace {
-  Point middle;                   ///< area-weighted, mm
-  Eigen::Vector3d area_vector{};  ///< mm^2: of an open crown along its growth axis, roughly
+  Point middle = Point::Zero();  ///< area-weighted, mm
+  Eigen::Vector3d area_vector =
+      Eigen::Vector3d::Zero();  ///< mm^2: of an open crown along its growth axis, roughly; of a closed one nothing
+  double area = 0;              ///< mm^2
 };
 
 CrownPlace place_of_crown(const TriangleMesh& open_crown);
@@ -27,10 +30,11 @@ struct ArchPose {
 };
 
 /// Lays the mean arch on the middles and area vectors of a jaw's crowns, crowns far off (shifted or badly cut ones)
-/// weighing less. One crown is enough, then its turn about its axis is free (any). Keys: FDI numbers of permanent teeth
-/// of one jaw. Throws UsageError for no teeth, for others, and for both jaws at once.
-/// Least squares: S. Umeyama, "Least-squares estimation of transformation parameters between two point patterns", 1991.
-ArchPose fit_arch(const ArchModel& model, const std::map<int, CrownPlace>& crowns);
+/// weighing less. Keys: FDI numbers of permanent teeth
+/// of one jaw. Nothing where the crowns leave the turn open: one alone, or closed ones in a straight row. Throws
+/// UsageError for no teeth, for others, and for both jaws at once. Least squares: S. Umeyama, "Least-squares estimation
+/// of transformation parameters between two point patterns", 1991.
+std::optional<ArchPose> fit_arch(const ArchModel& model, const std::map<int, CrownPlace>& crowns);
 
 /// How each of these teeth stands: as in the mean arch, turned about the occlusal direction as the line between its
 /// neighbours is turned against the mean arch's. Unit, at right angles, in the crowns' frame.

@@ -187,9 +187,9 @@ TEST_F(CommandLine, StandardInputAndOutput) {
   EXPECT_TRUE(report("r.json")["input"]["sha256"].is_string());
   expect_error(complete("- --format stl --fdi 36 -o tooth.ply"), 3, "standard input");  // an empty one
   const Outcome full = run(complete("crown_36.stl --fdi 36 -o - > /dev/full; exit $?; true"));
-  EXPECT_EQ(full.code, 6) << full.error;
-  EXPECT_EQ(run("measure crown_36.stl > /dev/full; exit $?; true").code, 6);
-  EXPECT_EQ(run("measure crown_36.stl --json > /dev/full; exit $?; true").code, 6);
+  EXPECT_EQ(full.code, 7) << full.error;
+  EXPECT_EQ(run("measure crown_36.stl > /dev/full; exit $?; true").code, 7);
+  EXPECT_EQ(run("measure crown_36.stl --json > /dev/full; exit $?; true").code, 7);
 }
 
 TEST_F(CommandLine, NamesThatAreNotUtf8AndNamesOfPatients) {

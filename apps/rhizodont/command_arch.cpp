@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/number_options.hpp"
+#include "command_line/output_checks.hpp"
+#include "commands.hpp"
+#include "report/arch_files.hpp"
+#include "report/scan_input.hpp"
+#include "rhizodont/arch.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/output_files.hpp"
+#include "rhizodont/report.hpp"
+#include "teeth/fdi.hpp"
+#include "teeth/label_numbers.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rhizodont::command_line {
+namespace {
+
+struct ArchCommand {
+  std::string scan, output, models, lengths_file;
+  ScanLabelSource source;
+  std::vector<std::string> lengths;  // "36=14.2"
+  ArchFileOptions files;
+  ArchOptions options;
+  bool overwrite = false, quiet = false, name_in_report = false;
+};
+
+void add_length(const std::string& text, std::map<int, double>& lengths) {
+  const std::size_t at = text.find('=');
+  const auto fdi = read_fdi(text.substr(0, at));
+  double mm = 0;
+  const char *begin = text.data() + (at == std::string::npos ? text.size() : at + 1), *end = text.data() + text.size();
+  const auto [stop, failure] = std::from_chars(begin, end, mm);
+  if (!fdi || failure != std::errc() || stop != end)
+    throw UsageError(
+        fmt::format("--root-length takes teeth with their lengths in mm, such as 36=14.2, not '{}'.", text));
+  if (!lengths.emplace(*fdi, mm).second) throw UsageError(fmt::format("Tooth {} has two root lengths.", *fdi));
+}
+
+ArchProgress progress_line(bool quiet) {
+  if (quiet || !isatty(STDERR_FILENO)) return {};
+  return [](int done, int teeth, int) {
+    fmt::print(stderr, "\r\033[K{} of {} teeth", done, teeth);
+    if (done == teeth) fmt::print(stderr, "\r\033[K");
+    std::fflush(stderr);
+  };
+}
+
+void print_summary(const CompletedArch& arch) {
+  for (const ToothOfArch& tooth : arch.teeth) {
+    if (!tooth.tooth) {
+      fmt::print("{}: no root: {}\n", tooth.fdi, tooth.refusal);
+      continue;
+    }
+    const CompletionRecord& r = tooth.tooth->record;
+    fmt::print("{}: root {:.1f} mm", tooth.fdi, r.root.length_mm);
+    if (r.root.interval)
+      fmt::print(" ({:.1f} to {:.1f} with 80 % probability)", r.root.interval->length_low_mm,
+                 r.root.interval->length_high_mm);
+    fmt::print(", {} of {} crown triangles kept\n", r.crown.kept_triangles, r.crown.triangles);
+    for (const std::string& warning : all_warnings(r)) fmt::print("  note: {}\n", warning);
+  }
+}
+
+void run(ArchCommand& command) {
+  for (const std::string& length : command.lengths) add_length(length, command.options.root_lengths);
+  const std::filesystem::path models =
+      command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
+  std::vector<std::filesystem::path> inputs = files_of_scan(command.scan, command.source);
+  if (!command.lengths_file.empty()) {
+    inputs.emplace_back(command.lengths_file);
+    for (const auto& [fdi, mm] : read_root_lengths(read_file_bytes(command.lengths_file)))
+      if (!command.options.root_lengths.emplace(fdi, mm).second)
+        throw UsageError(fmt::format("Tooth {} has two root lengths.", fdi));
+  }
+  for (const std::filesystem::path& file : model_files(models)) inputs.push_back(file);
+  const ScanInput input = read_scan(command.scan, command.source);
+  const std::vector<std::filesystem::path> names = arch_file_names(input.scan, command.files, command.output);
+  require_new(names, command.overwrite);
+  require_safe_outputs(inputs, names);
+  if (!command.quiet)
+    for (const std::string& note : input.notes) fmt::print("{}\n", note);
+  if (std::filesystem::is_regular_file(command.scan)) {
+    command.files.scan_sha256 = sha256_of_bytes(read_file_bytes(command.scan));
+    if (command.name_in_report) command.files.scan_name = std::filesystem::path(command.scan).filename().string();
+  }
+  const CompletedArch arch =
+      complete_arch(input.scan, CompletionModels::load(models), command.options, progress_line(command.quiet));
+  write_output_files(arch_files(input, arch, command.options, command.files, command.output));
+  int rooted = 0;
+  for (const ToothOfArch& tooth : arch.teeth) rooted += tooth.tooth.has_value();
+  if (!command.quiet) {
+    print_summary(arch);
+    fmt::print("{} of {} teeth have roots; all is in {}\n", rooted, arch.teeth.size(), command.output);
+  }
+  if (rooted < static_cast<int>(arch.teeth.size())) exit_with(static_cast<int>(ErrorCode::partial));
+}
+
+void add_label_options(CLI::App& arch, const std::shared_ptr<ArchCommand>& command) {
+  arch.add_option("--labels", command->source.labels, "File with a number for each vertex (JSON of Teeth3DS)");
+  arch.add_option("--label-array", command->source.array, "Name of the scan's array of numbers, per point or cell");
+  arch.add_option("--palette", command->source.palette,
+                  "What the scan's colours stand for: lines 'RRGGBB number', or JSON");
+  arch.add_option_function<std::string>(
+      "--labels-are", [command](const std::string& word) { command->source.numbers = read_label_numbers(word); },
+      "What the numbers are: fdi, universal, arch14, arch16; decided by themselves if not given");
+  arch.add_option_function<std::string>(
+          "--jaw",
+          [command](const std::string& word) { command->source.jaw = word == "upper" ? Jaw::upper : Jaw::lower; },
+          "upper or lower, where numbers run along the arch")
+      ->check(CLI::IsMember({"upper", "lower"}));
+}
+
+}  // namespace
+
+void add_arch_command(CLI::App& app) {
+  auto command = std::make_shared<ArchCommand>();
+  CLI::App* arch = app.add_subcommand("arch", "Every tooth of a labelled scan with its root");
+  arch->add_option("SCAN", command->scan,
+                   "Scan whose teeth are labelled, or a folder of crowns with their numbers in their names")
+      ->required();
+  arch->add_option("-o,--output", command->output, "Folder for the teeth, reports, scene and picture")->required();
+  add_label_options(*arch, command);
+  arch->add_option("--root-length", command->lengths,
+                   "Lengths of roots measured on X-rays, in mm: 36=14.2 11=13.0; the other teeth follow");
+  arch->add_option("--root-lengths", command->lengths_file, "The same from a file with lines 36,14.2");
+  arch->add_option("--e", command->options.tooth.e,
+                   "Side of the lattice in mm, 0.2 to 2; new edges are about half of it")
+      ->capture_default_str();
+  arch->add_option("--output-format", command->files.tooth_format, "Format of the teeth")
+      ->check(CLI::IsMember({"ply", "stl", "obj", "glb"}))
+      ->capture_default_str();
+  arch->add_option_function<std::string>(
+          "--unit",
+          [command](const std::string& name) {
+            command->options.tooth.millimetres_per_unit = millimetres_per_unit(name);
+          },
+          "Unit of the scan's file: mm, cm, m, um, in, also in full and in capitals")
+      ->default_str("mm");
+  arch->add_flag("--name-in-report", command->name_in_report,
+                 "The report names the scan's file; else it holds its hash alone, for names tell of patients");
+  arch->add_flag("--overwrite", command->overwrite, "Replace files that are in the folder already");
+  arch->add_option("--threads", command->options.tooth.threads, "At most so many threads; 0 = all")
+      ->capture_default_str();
+  arch->add_option("--models", command->models, "Folder with the models");
+  arch->add_flag("--quiet", command->quiet, "Print nothing but errors");
+  arch->callback([command] { run(*command); });
+}
+
+}  // namespace rhizodont::command_line

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "report/scan_input.hpp"
+#include "rhizodont/arch.hpp"
+#include "rhizodont/output_files.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rhizodont {
+
+inline constexpr int arch_report_version = 1;
+
+struct ArchFileOptions {
+  std::string tooth_format = "ply";      ///< ply, stl, obj or glb
+  std::optional<std::string> scan_name;  ///< for the report; names tell of patients
+  std::string scan_sha256;               ///< of the scan's file; empty: not known
+};
+
+/// Everything that a completed arch gives, as files of a folder:
+/// tooth_FDI.FORMAT with tooth_FDI.json, its report; crown_FDI.ply, as cut from the scan, with the scan's own numbers
+/// of its vertices (`scan_vertex`); arch.glb (a named node for each tooth and the gum), arch.ply (attributes fdi,
+/// source, uncertainty), labels.json (Teeth3DS), axes.json and axes.mrk.json (3D Slicer), arch.json, the report
+/// (docs/arch_report.schema.json), and arch.png, where the teeth tell which way is up.
+std::vector<OutputFile> arch_files(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,
+                                   const ArchFileOptions& how, const std::filesystem::path& folder);
+
+/// The names that these files may have, before it is known which teeth there will be.
+std::vector<std::filesystem::path> arch_file_names(const LabelledScan& scan, const ArchFileOptions& how,
+                                                   const std::filesystem::path& folder);
+
+}  // namespace rhizodont

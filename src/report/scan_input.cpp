@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/scan_input.hpp"
+
+#include "base/lower_case.hpp"
+#include "io/scan_labels.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/tooth_file.hpp"
+#include "teeth/fdi.hpp"
+#include "teeth/label_numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace rhizodont {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored);
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+fs::path beside(const fs::path& scan) {
+  fs::path name = scan;
+  if (name.extension() == ".gz") name.replace_extension();
+  return name.replace_extension(".json");
+}
+
+bool is_mesh_name(const fs::path& path) {
+  static const std::set<std::string> endings{".stl", ".ply", ".obj", ".off", ".vtp", ".vtk"};
+  return endings.contains(lower_case(path.extension().string()));
+}
+
+std::vector<fs::path> crowns_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && is_mesh_name(entry.path()) && tooth_in_name(entry.path()))
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  if (files.empty())
+    throw InputError(folder.string() +
+                     " has no crown with its tooth's number in the name of the file, such as crown_36.ply or UR1.stl.");
+  return files;
+}
+
+ScanInput scan_of_folder(const fs::path& folder) {
+  ScanInput input;
+  std::map<int, fs::path> seen;
+  for (const fs::path& path : crowns_in(folder)) {
+    const int fdi = *tooth_in_name(path);
+    if (const auto [first, is_new] = seen.emplace(fdi, path); !is_new)
+      throw InputError(fmt::format("{} and {} are both of tooth {}.", first->second.filename().string(),
+                                   path.filename().string(), fdi));
+    const MeshFile crown = load_mesh(path);
+    TriangleMesh& all = input.file.mesh;
+    const auto before = static_cast<std::int32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), crown.mesh.vertices.begin(), crown.mesh.vertices.end());
+    for (Triangle t : crown.mesh.triangles) {
+      for (std::int32_t& v : t) v += before;
+      all.triangles.push_back(t);
+    }
+    input.scan.fdi.resize(all.vertices.size(), fdi);
+    input.file.coordinates_fit_float = input.file.coordinates_fit_float && crown.coordinates_fit_float;
+    for (const std::string& note : crown.notes) input.notes.push_back(fmt::format("Tooth {}: {}", fdi, note));
+  }
+  input.scan.mesh = input.file.mesh;
+  input.notes.insert(input.notes.begin(),
+                     fmt::format("{} crowns, their numbers taken from the files' names.", seen.size()));
+  return input;
+}
+
+RawLabels raw_labels(const fs::path& scan, const MeshFile& file, const ScanLabelSource& source) {
+  if (!source.labels.empty()) return labels_from_teeth3ds(read_file_bytes(source.labels), file);
+  if (!source.palette.empty()) return labels_from_colours(file, read_palette(read_file_bytes(source.palette)));
+  if (!source.array.empty() || has_label_array(file)) return labels_from_array(file, source.array);
+  if (is_there(beside(scan))) return labels_from_teeth3ds(read_file_bytes(beside(scan)), file);
+  throw InputError(
+      "Nothing tells this scan's teeth apart: it has no array of labels, and no file of labels lies beside it. Name "
+      "one "
+      "(--labels FILE.json), an array (--label-array NAME), or what its colours stand for (--palette FILE).");
+}
+
+}  // namespace
+
+ScanInput read_scan(const fs::path& path, const ScanLabelSource& source) {
+  const auto given = static_cast<int>(!source.labels.empty()) + static_cast<int>(!source.array.empty()) +
+                     static_cast<int>(!source.palette.empty());
+  if (given > 1) throw UsageError("Labels come from one place: a file, an array, or colours.");
+  if (is_folder(path)) {
+    if (given > 0) throw UsageError("The crowns of a folder have their numbers in their names.");
+    return scan_of_folder(path);
+  }
+  ScanInput input;
+  input.file = load_mesh(path);
+  input.notes = input.file.notes;
+  input.file.notes.clear();
+  RawLabels raw = raw_labels(path, input.file, source);
+  LabelNumberOptions options;
+  options.forced = source.numbers;
+  options.stated = raw.stated_numbers;
+  options.jaw = source.jaw ? source.jaw : raw.stated_jaw;
+  input.scan.mesh = input.file.mesh;
+  ScanLabels labels = decide_label_numbers(input.scan.mesh, raw.per_vertex, options);
+  input.notes.push_back(fmt::format("Labels from {}. {}", raw.origin, labels.decided));
+  CleanedLabels cleaned = clean_labels(input.scan.mesh, labels.fdi);
+  for (const LabelChange& change : cleaned.changes) input.notes.push_back(describe(change));
+  input.scan.fdi = std::move(cleaned.fdi);
+  return input;
+}
+
+std::vector<fs::path> files_of_scan(const fs::path& scan, const ScanLabelSource& source) {
+  if (is_folder(scan)) return crowns_in(scan);
+  std::vector<fs::path> files{scan};
+  for (const fs::path* named : {&source.labels, &source.palette})
+    if (!named->empty()) files.push_back(*named);
+  if (files.size() == 1 && source.array.empty() && is_there(beside(scan))) files.push_back(beside(scan));
+  return files;
+}
+
+std::optional<int> tooth_in_name(const fs::path& file) {
+  const std::string name = lower_case(file.stem().string());
+  static const std::regex quadrant("(?:^|[^a-z])([ul])([rl])([1-8])(?![0-9])"), universal("id_([0-9]{1,2})(?![0-9])"),
+      digits("(?:^|[^0-9])([1-8][1-8])(?![0-9])");
+  std::set<int> found;
+  std::smatch match;
+  if (std::regex_search(name, match, quadrant)) {
+    const bool upper = match[1] == "u", right = match[2] == "r";
+    found.insert(10 * (upper ? (right ? 1 : 2) : (right ? 4 : 3)) + (match[3].str()[0] - '0'));
+  } else if (std::regex_search(name, match, universal)) {
+    if (const auto fdi = fdi_of_universal(std::stoi(match[1]))) found.insert(*fdi);
+  } else if (const auto permanent = fdi_in_name(file)) {
+    return permanent;
+  } else {
+    for (std::sregex_iterator i(name.begin(), name.end(), digits), end; i != end; ++i)
+      if (const auto fdi = read_fdi((*i)[1].str())) found.insert(*fdi);
+  }
+  return found.size() == 1 ? std::optional(*found.begin()) : std::nullopt;
+}
+
+std::map<int, double> read_root_lengths(std::string_view text) {
+  std::map<int, double> lengths;
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  static const std::regex entry(R"(\s*([1-8][1-8])\s*[,;\t ]\s*([0-9]+(?:\.[0-9]+)?)\s*)"), nothing(R"(\s*(#.*)?)");
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    std::smatch match;
+    if (std::regex_match(line, nothing)) continue;
+    const auto fdi = std::regex_match(line, match, entry) ? read_fdi(match[1].str()) : std::nullopt;
+    if (!fdi) {
+      if (number == 1 && line.find_first_of("0123456789") == std::string::npos) continue;  // a heading
+      throw InputError(
+          fmt::format("Line {} of the root lengths is not a tooth and its length in mm, such as 36,14.2.", number));
+    }
+    double mm = 0;
+    const std::string word = match[2];
+    std::from_chars(word.data(), word.data() + word.size(), mm);
+    if (!lengths.emplace(*fdi, mm).second)
+      throw InputError(fmt::format("Line {} of the root lengths names tooth {} a second time.", number, *fdi));
+  }
+  return lengths;
+}
+
+}  // namespace rhizodont

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "base/tooth_labels.hpp"
+#include "rhizodont/arch.hpp"
+#include "rhizodont/io.hpp"
+#include "teeth/clean_labels.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rhizodont {
+
+/// Where the numbers of a scan's teeth are, and what they mean, as far as the user says so.
+struct ScanLabelSource {
+  std::filesystem::path labels;   ///< a Teeth3DS file; empty: not given
+  std::string array;              ///< name of an array of the scan's file; empty: not given
+  std::filesystem::path palette;  ///< colours and their numbers; empty: not given
+  std::optional<LabelNumbers> numbers;
+  std::optional<Jaw> jaw;
+};
+
+/// A scan with its teeth, as read.
+struct ScanInput {
+  MeshFile file;  ///< of a folder: all crowns, one after the other, without attributes
+  LabelledScan scan;
+  std::vector<std::string> notes;  ///< of reading, what the numbers were taken for, what was cleaned; a sentence each
+};
+
+/// Reads a scan and finds its labels: those that the source names, else the scan's own array, else a Teeth3DS file of
+/// the same name beside it (SCAN.json). A folder holds a crown a file, with the tooth's number in its name: 36, UR1,
+/// id_3 (universal). Labels are decided, cleaned, and given as FDI numbers. Throws InputError where there are none, or
+/// as the readers do; UsageError for more than one source.
+ScanInput read_scan(const std::filesystem::path& scan, const ScanLabelSource& source = {});
+
+/// The files that `read_scan` will read.
+std::vector<std::filesystem::path> files_of_scan(const std::filesystem::path& scan, const ScanLabelSource& source);
+
+/// The permanent or milk tooth that a file's name tells of: two digits (FDI), UR1 to LL8, id_1 to id_32 (universal).
+/// Nothing if there is none or more than one.
+std::optional<int> tooth_in_name(const std::filesystem::path& file);
+
+/// Root lengths in mm by FDI number, from lines "36,14.2" or "36;14.2"; the first line may be a heading, # begins a
+/// remark. Throws InputError, with the line, for anything else and for a tooth named twice.
+std::map<int, double> read_root_lengths(std::string_view text);
+
+}  // namespace rhizodont

@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "rhizodont/arch.hpp"
+
+#include "rhizodont/check.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+
+#include <gtest/gtest.h>
+#include <Eigen/Geometry>
+
+#include <atomic>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+namespace rhizodont {
+namespace {
+
+const std::filesystem::path samples = std::filesystem::path(RHIZODONT_SOURCE_DIR) / "samples";
+
+const CompletionModels& models() {
+  static const CompletionModels shipped =
+      CompletionModels::load(std::filesystem::path(RHIZODONT_SOURCE_DIR) / "models");
+  return shipped;
+}
+
+/// Some crowns side by side in one scan, with a patch of gum.
+LabelledScan row_of(const std::vector<std::pair<const char*, int>>& crowns) {
+  LabelledScan scan;
+  double x = 0;
+  for (const auto& [file, fdi] : crowns) {
+    const TriangleMesh crown = load_mesh(samples / file).mesh;
+    const auto before = static_cast<std::int32_t>(scan.mesh.vertices.size());
+    Eigen::AlignedBox3d box;
+    for (const Point& p : crown.vertices) box.extend(p);
+    for (const Point& p : crown.vertices) scan.mesh.vertices.push_back(p - box.center() + Point(x, 0, 0));
+    for (Triangle t : crown.triangles) {
+      for (std::int32_t& v : t) v += before;
+      scan.mesh.triangles.push_back(t);
+    }
+    scan.fdi.resize(scan.mesh.vertices.size(), fdi);
+    x += 14;
+  }
+  const auto n = static_cast<std::int32_t>(scan.mesh.vertices.size());
+  for (const Point& p : {Point(0, 20, 0), Point(1, 20, 0), Point(0, 21, 0)}) scan.mesh.vertices.push_back(p);
+  scan.mesh.triangles.push_back({n, n + 1, n + 2});
+  scan.fdi.resize(scan.mesh.vertices.size(), 0);
+  return scan;
+}
+
+TEST(CompleteArch, EveryToothKeepsThePromisesAndRefersToItsCrown) {
+  const LabelledScan scan = row_of({{"crown_36.stl", 36}, {"crown_34.ply", 34}, {"crown_36.stl", 75}});
+  std::vector<int> told;
+  const CompletedArch arch = complete_arch(scan, models(), {}, [&](int done, int teeth, int fdi) {
+    EXPECT_EQ(teeth, 3);
+    EXPECT_EQ(done, static_cast<int>(told.size()) + 1);
+    told.push_back(fdi);
+  });
+  EXPECT_EQ(told.size(), 3U);
+  EXPECT_EQ(arch.gum.triangles.size(), 1U);
+  ASSERT_EQ(arch.teeth.size(), 3U);
+  for (const ToothOfArch& tooth : arch.teeth) {
+    for (std::size_t v = 0; v < tooth.crown.vertices.size(); ++v)
+      EXPECT_EQ(tooth.crown.vertices[v], scan.mesh.vertices[static_cast<std::size_t>(tooth.scan_vertices[v])]);
+    if (tooth.fdi == 75) {
+      EXPECT_FALSE(tooth.tooth);
+      EXPECT_NE(tooth.refusal.find("milk"), std::string::npos) << tooth.refusal;
+      continue;
+    }
+    ASSERT_TRUE(tooth.tooth) << tooth.fdi << ": " << tooth.refusal;
+    EXPECT_TRUE(tooth.tooth->record.promises.holds());
+    EXPECT_TRUE(tooth.tooth->options.directions);
+    EXPECT_GT(tooth.tooth->record.root.length_mm, 5);
+    const LongAxes axes = long_axes(*tooth.tooth);
+    EXPECT_NEAR(axes.root.direction.norm(), 1, 1e-9);
+    EXPECT_GT(axes.root.direction.dot(axes.crown.direction), 0.8) << tooth.fdi;
+    EXPECT_GT((axes.root.to - axes.root.from).norm(), 4) << tooth.fdi;
+  }
+}
+
+TEST(CompleteArch, IsTheSameForAnyNumberOfThreads) {
+  const LabelledScan scan = row_of({{"crown_36.stl", 36}, {"crown_34.ply", 34}});
+  ArchOptions one;
+  one.tooth.threads = 1;
+  const CompletedArch a = complete_arch(scan, models(), one), b = complete_arch(scan, models());
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_TRUE(a.teeth[i].tooth && b.teeth[i].tooth);
+    EXPECT_EQ(a.teeth[i].tooth->mesh.vertices, b.teeth[i].tooth->mesh.vertices);
+    EXPECT_EQ(a.teeth[i].tooth->mesh.triangles, b.teeth[i].tooth->mesh.triangles);
+  }
+}
+
+TEST(CompleteArch, AMeasuredLengthIsKeptAndMovesTheOthers) {
+  const LabelledScan scan = row_of({{"crown_36.stl", 36}, {"crown_34.ply", 34}});
+  const CompletedArch alone = complete_arch(scan, models());
+  ASSERT_TRUE(alone.teeth[0].tooth && alone.teeth[1].tooth);
+  const double other = alone.teeth[0].tooth->record.root.length_mm,
+               measured = alone.teeth[1].tooth->record.root.length_mm + 2;
+  ArchOptions options;
+  options.root_lengths[36] = measured;
+  const CompletedArch arch = complete_arch(scan, models(), options);
+  ASSERT_TRUE(arch.teeth[0].tooth && arch.teeth[1].tooth);
+  EXPECT_NEAR(arch.teeth[1].tooth->record.root.length_mm, measured, 0.3);
+  EXPECT_GT(arch.teeth[0].tooth->record.root.length_mm, other + 0.2);
+  const auto &before = alone.teeth[0].tooth->record.root.interval, &after = arch.teeth[0].tooth->record.root.interval;
+  ASSERT_TRUE(before && after);
+  EXPECT_LT(after->length_high_mm - after->length_low_mm, before->length_high_mm - before->length_low_mm);
+  EXPECT_FALSE(arch.teeth[1].tooth->record.root.interval);
+  options.root_lengths = {{47, 14.0}};
+  EXPECT_THROW(complete_arch(scan, models(), options), UsageError);
+}
+
+TEST(CompleteArch, RefusesWhatIsNoArch) {
+  LabelledScan scan = row_of({{"crown_34.ply", 34}});
+  LabelledScan none = scan;
+  std::fill(none.fdi.begin(), none.fdi.end(), 0);
+  EXPECT_THROW(complete_arch(none, models()), InputError);
+  LabelledScan metres = scan;
+  for (Point& p : metres.mesh.vertices) p /= 1000;
+  EXPECT_THROW(complete_arch(metres, models()), InputError);
+  LabelledScan shorter = scan;
+  shorter.fdi.pop_back();
+  EXPECT_THROW(complete_arch(shorter, models()), InputError);
+  ArchOptions options;
+  options.tooth.fdi = 36;
+  EXPECT_THROW(complete_arch(scan, models(), options), UsageError);
+  options = {};
+  options.root_lengths[34] = 99;
+  EXPECT_THROW(complete_arch(scan, models(), options), UsageError);
+}
+
+TEST(CompleteArch, WhatProgressThrowsComesThrough) {
+  const LabelledScan scan = row_of({{"crown_34.ply", 74}, {"crown_34.ply", 84}});
+  EXPECT_THROW(complete_arch(scan, models(), {}, [](int, int, int) { throw std::runtime_error("stop"); }),
+               std::runtime_error);
+}
+
+}  // namespace
+}  // namespace rhizodont
