@@ -27,6 +27,9 @@ struct ArchOptions {
   /// is expected of the others moves with them.
   std::map<int, double> root_lengths;
 
+  bool resolve_collisions = false;  ///< turn, bend or shorten roots that come nearer to other teeth than `clearance`
+  double clearance_mm = 0.5;        ///< [0, 3]
+
   /// What crowns cut from a scan by their labels need: skirts dropped, defects mended.
   static CompleteOptions skirt_and_repair();
 };
@@ -37,7 +40,9 @@ struct ToothOfArch {
   TriangleMesh crown;                   ///< as cut from the scan
   std::vector<int> scan_vertices;       ///< of the scan, for each vertex of `crown`
   std::optional<CompletedTooth> tooth;  ///< its record refers to `crown`; not there if it was refused
-  std::string refusal;                  ///< why there is no tooth; empty if there is one
+  /// mm, per vertex of the tooth: signed distance from the nearest other tooth, at most 10; negative inside of one
+  std::vector<double> clearance;
+  std::string refusal;  ///< why there is no tooth; empty if there is one
 };
 
 /// A line through a part of a tooth, in the input's frame and unit.
@@ -56,9 +61,19 @@ struct LongAxes {
 /// third of the root, so that several roots count together.
 LongAxes long_axes(const CompletedTooth& tooth);
 
+/// How near two teeth come, mm: exact distances of their triangles, negative (minus a depth) where they run into each
+/// other. A part that is missing has none.
+struct ToothClearance {
+  int first = 0, second = 0;                     ///< FDI numbers
+  std::optional<double> crown_crown;             ///< as scanned
+  std::optional<double> root_root;               ///< transition and predicted parts
+  std::optional<double> root_crown, crown_root;  ///< the first's root and the second's crown, and the other way
+};
+
 struct CompletedArch {
-  std::vector<ToothOfArch> teeth;  ///< by FDI number
-  TriangleMesh gum;                ///< what is no tooth's in the scan
+  std::vector<ToothOfArch> teeth;          ///< by FDI number
+  std::vector<ToothClearance> clearances;  ///< of all pairs that come nearer than 10 mm
+  TriangleMesh gum;                        ///< what is no tooth's in the scan
   /// Directions of the scan to those of the patient: x to the left, y up, z to the front. Not there where the teeth
   /// leave it open; of a scan of both jaws the lower jaw's.
   std::optional<Eigen::Matrix3d> upright;

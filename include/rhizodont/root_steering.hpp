@@ -20,6 +20,8 @@ struct RootSteering {
   double torque_degrees = 0;  ///< [-30, 30]: positive: apex towards tongue or palate
   double bend_degrees = 0;    ///< [-45, 45]: bends its lower half; positive: apex towards distal
 
+  bool operator==(const RootSteering&) const = default;
+
   /// True if there is anything to do.
   bool any() const { return length_mm || tip_degrees != 0 || torque_degrees != 0 || bend_degrees != 0; }
 };

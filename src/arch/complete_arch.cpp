@@ -3,7 +3,9 @@
 
 // "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", figure 1 and section 4.1: from a
 // segmented scan to whole teeth. What a person's lengths say of each other: person_lengths.cpp.
+#include "arch/clearance.hpp"
 #include "arch/person_lengths.hpp"
+#include "arch/resolve_collisions.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "pipeline/models.hpp"
@@ -36,6 +38,9 @@ void require_in_range(const ArchOptions& options) {
   if (options.tooth.fdi || options.tooth.directions || options.tooth.steering.length_mm)
     throw UsageError(
         "Numbers, directions and root lengths are each tooth's own: they cannot be set for the whole arch.");
+  if (!(options.clearance_mm >= 0 && options.clearance_mm <= 3))
+    throw UsageError(
+        fmt::format("A clearance of {} mm between roots is out of its range, 0 to 3 mm.", options.clearance_mm));
   for (const auto& [fdi, mm] : options.root_lengths)
     if (!(mm >= shortest_root_mm && mm <= longest_root_mm))
       throw UsageError(fmt::format("A root length of {} mm for tooth {} is out of its range, {} to {} mm.", mm, fdi,
@@ -224,6 +229,75 @@ void heed_measured(std::vector<ToothOfArch>& teeth, const Prepared& prepared, co
   });
 }
 
+TriangleMesh in_millimetres(const CompletedTooth& tooth) {
+  TriangleMesh mesh = tooth.mesh;
+  for (Point& p : mesh.vertices) p *= tooth.record.millimetres_per_unit;
+  return mesh;
+}
+
+std::optional<double> millimetres(const std::optional<Approach>& approach) {
+  return approach ? std::optional(approach->mm) : std::nullopt;
+}
+
+void measure_clearances(CompletedArch& arch) {
+  std::vector<std::optional<SolidSurface>> surfaces(arch.teeth.size());
+  std::vector<const SolidSurface*> teeth(arch.teeth.size(), nullptr);
+  tbb::parallel_for(std::size_t{0}, arch.teeth.size(), [&](std::size_t i) {
+    const std::optional<CompletedTooth>& tooth = arch.teeth[i].tooth;
+    if (tooth) teeth[i] = &surfaces[i].emplace(tooth_surface(in_millimetres(*tooth), tooth->source));
+  });
+  for (const NeighbourClearance& pair : neighbour_clearances(teeth))
+    arch.clearances.push_back({arch.teeth[pair.first].fdi, arch.teeth[pair.second].fdi,
+                               millimetres(pair.clearance.crown_crown), millimetres(pair.clearance.root_root),
+                               millimetres(pair.clearance.root_crown), millimetres(pair.clearance.crown_root)});
+  std::vector<std::vector<double>> per_vertex = vertex_clearances(teeth);
+  for (std::size_t i = 0; i < per_vertex.size(); ++i) arch.teeth[i].clearance = std::move(per_vertex[i]);
+}
+
+/// Brings roots apart; what cannot be is said in the arch's notes.
+void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& options) {
+  std::vector<std::size_t> numbers;
+  std::vector<SteerableRoot> roots;
+  std::vector<SourcedTooth> teeth;
+  for (std::size_t i = 0; i < arch.teeth.size(); ++i) {
+    const ToothOfArch& tooth = arch.teeth[i];
+    if (!tooth.tooth) continue;
+    numbers.push_back(i);
+    roots.push_back(steerable_root(*tooth.tooth, tooth.tooth->options.steering));
+    if (options.root_lengths.contains(tooth.fdi)) roots.back().shortest_mm = roots.back().length_mm;
+    teeth.push_back({in_millimetres(*tooth.tooth), tooth.tooth->source});
+  }
+  std::map<std::size_t, CompletedTooth> made;
+  const auto finish = [&](std::size_t number, const RootSteering& steering) {
+    const std::size_t i = numbers[number];
+    CompletedTooth tooth = finish_tooth(prepared[i].value(), steering, options.tooth.transition);
+    tooth.record.root.interval = arch.teeth[i].tooth->record.root.interval;
+    SourcedTooth sourced{in_millimetres(tooth), tooth.source};
+    made.insert_or_assign(number, std::move(tooth));
+    return sourced;
+  };
+  ResolveOptions how;
+  how.search.clearance = options.clearance_mm;
+  const ResolvedCollisions resolved = resolve_collisions(roots, teeth, finish, how);
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    if (resolved.cost_mm[k] == 0) continue;
+    ToothOfArch& tooth = arch.teeth[numbers[k]];
+    // The last that was made need not be the one that was taken.
+    const auto last = made.find(k);
+    if (last == made.end() || last->second.options.steering != resolved.steering[k]) finish(k, resolved.steering[k]);
+    std::vector<std::string> warnings = std::move(tooth.tooth->record.warnings);
+    tooth.tooth = std::move(made.at(k));
+    for (std::string& warning : warnings)
+      if (std::find(tooth.tooth->record.warnings.begin(), tooth.tooth->record.warnings.end(), warning) ==
+          tooth.tooth->record.warnings.end())
+        tooth.tooth->record.warnings.push_back(std::move(warning));
+    tooth.tooth->record.warnings.push_back(fmt::format(
+        "The root was changed by {:.1f} mm at its end to keep clear of its neighbours.", resolved.cost_mm[k]));
+  }
+  for (const UnresolvedCollision& left : resolved.unresolved) arch.notes.push_back(left.sentence);
+  arch.notes.insert(arch.notes.end(), resolved.notes.begin(), resolved.notes.end());
+}
+
 }  // namespace
 
 CompleteOptions ArchOptions::skirt_and_repair() {
@@ -247,6 +321,8 @@ CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& mo
         directions_of(arch.teeth, *content.arch, options.tooth.millimetres_per_unit, arch.upright);
     const Prepared prepared = complete_each(arch.teeth, directions, models, options, progress);
     heed_measured(arch.teeth, prepared, options, arch.notes);
+    if (options.resolve_collisions) resolve(arch, prepared, options);
+    measure_clearances(arch);
     return arch;
   });
 }

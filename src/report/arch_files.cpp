@@ -62,16 +62,19 @@ void append(TriangleMesh& all, const TriangleMesh& part) {
 MeshFile arch_in_one(const CompletedArch& arch) {
   MeshFile file;
   VertexAttribute fdi{AttributeType::uint8, {}}, source{AttributeType::uint8, {}},
-      uncertainty{AttributeType::float32, {}};
+      uncertainty{AttributeType::float32, {}}, clearance{AttributeType::float32, {}};
   for (const ToothOfArch& tooth : arch.teeth) {
     if (!tooth.tooth) continue;
     append(file.mesh, tooth.tooth->mesh);
     fdi.values.resize(file.mesh.vertices.size(), tooth.fdi);
     for (const VertexSource s : tooth.tooth->source) source.values.push_back(static_cast<double>(s));
     for (const double u : tooth.tooth->uncertainty) uncertainty.values.push_back(static_cast<float>(u));
+    for (const double c : tooth.clearance) clearance.values.push_back(static_cast<float>(c));
   }
-  file.vertex_attributes = {
-      {"fdi", std::move(fdi)}, {source_attribute, std::move(source)}, {"uncertainty", std::move(uncertainty)}};
+  file.vertex_attributes = {{"fdi", std::move(fdi)},
+                            {source_attribute, std::move(source)},
+                            {"uncertainty", std::move(uncertainty)},
+                            {"clearance", std::move(clearance)}};
   file.comments = {"whole teeth: scanned crowns with predicted roots, not the patient's anatomy",
                    "fdi: number of the tooth", "source: 0 scan, 1 transition, 2 predicted"};
   return file;
@@ -170,6 +173,18 @@ Json tooth_json(const ToothOfArch& tooth, const ArchFileOptions& how) {
   return json;
 }
 
+Json clearances_json(const CompletedArch& arch) {
+  const auto number = [](const std::optional<double>& mm) { return mm ? Json(*mm) : Json(nullptr); };
+  Json json = Json::array();
+  for (const ToothClearance& c : arch.clearances)
+    json.push_back({{"teeth", {c.first, c.second}},
+                    {"crown_crown_mm", number(c.crown_crown)},
+                    {"root_root_mm", number(c.root_root)},
+                    {"root_crown_mm", number(c.root_crown)},
+                    {"crown_root_mm", number(c.crown_root)}});
+  return json;
+}
+
 Json report_json(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,
                  const ArchFileOptions& how) {
   Json teeth = Json::array(), lengths = Json::object();
@@ -187,9 +202,14 @@ Json report_json(const ScanInput& input, const CompletedArch& arch, const ArchOp
           {"input",
            {{"file", how.scan_name ? Json(*how.scan_name) : Json(nullptr)},
             {"sha256", how.scan_sha256.empty() ? Json(nullptr) : Json(how.scan_sha256)}}},
-          {"options", {{"tooth", Json(options.tooth)}, {"root_lengths_mm", lengths}}},
+          {"options",
+           {{"tooth", Json(options.tooth)},
+            {"root_lengths_mm", lengths},
+            {"resolve_collisions", options.resolve_collisions},
+            {"clearance_mm", options.clearance_mm}}},
           {"rooted", rooted},
           {"teeth", teeth},
+          {"clearances", clearances_json(arch)},
           {"notes", notes}};
 }
 

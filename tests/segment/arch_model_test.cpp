@@ -42,7 +42,7 @@ TEST(ArchModel, TeethStandAsInAMouth) {
     EXPECT_GT((left ? 1 : -1) * tooth.place.x(), 0) << fdi;
     // Cheeks and lips are outside of the arch.
     const Eigen::Vector3d outwards = tooth.place - Point(0, tooth.place.y(), -15);
-    EXPECT_GT(tooth.directions.buccal.dot(outwards.normalized()), 0.6) << fdi;
+    EXPECT_GT(tooth.directions.buccal.dot(outwards.normalized()), 0.5) << fdi;
   }
   // Incisors lean to the front, lower second molars inwards and forwards (Tong et al. 2012).
   EXPECT_GT(model.teeth.at(21).directions.occlusal.z(), 0.4);

@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "arch/resolve_collisions.hpp"
+
+#include "mesh/at.hpp"
+#include "rhizodont/error.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+
+namespace rhizodont {
+namespace {
+
+constexpr double enough = 1e-3;  // mm: to be as near as this to what was wanted is to have it
+
+bool same(const RootSteering& a, const RootSteering& b) {
+  return a.length_mm == b.length_mm && a.tip_degrees == b.tip_degrees && a.torque_degrees == b.torque_degrees &&
+         a.bend_degrees == b.bend_degrees;
+}
+
+/// A finished tooth in the zones of its trial tooth: each new triangle is where the trial tooth is nearest. `trial`: so
+/// steered; empty of a root that stays as it is, all of which is neck.
+SolidSurface in_zones(const SourcedTooth& tooth, const TriangleMesh& trial, const std::vector<int>& trial_zones) {
+  std::optional<SolidSurface> guide;
+  if (!trial.vertices.empty()) guide.emplace(trial, trial_zones, root_zone_count);
+  std::vector<int> zones(tooth.mesh.triangles.size(), static_cast<int>(RootZone::crown));
+  tbb::parallel_for(std::size_t{0}, zones.size(), [&](std::size_t k) {
+    const Triangle& t = tooth.mesh.triangles[k];
+    if (std::all_of(t.begin(), t.end(), [&](int v) { return tooth.source[at(v)] == VertexSource::scan; })) return;
+    Point middle = Point::Zero();
+    for (const int v : t) middle += tooth.mesh.vertices[at(v)] / 3;
+    const int zone = guide ? guide->part_of(guide->signed_distance(middle)->triangle) : 0;
+    zones[k] = std::max(zone, static_cast<int>(RootZone::neck));
+  });
+  return SolidSurface(tooth.mesh, std::move(zones), root_zone_count);
+}
+
+/// The teeth as made in one round.
+struct Round {
+  std::vector<RootSteering> steering;
+  std::vector<SourcedTooth> teeth;
+  std::vector<double> cost;
+  std::vector<bool> at_limit;
+  std::map<ToothPair, double> missing;  // where roots move; of finished teeth
+
+  double all_missing() const {
+    double sum = 0;
+    for (const auto& [pair, mm] : missing) sum += mm;
+    return sum;
+  }
+};
+
+class Resolving {
+ public:
+  Resolving(const std::vector<SteerableRoot>& roots, const std::vector<SourcedTooth>& teeth, const FinishTooth& finish,
+            const ResolveOptions& options)
+      : roots_(roots), finish_(finish), options_(options) {
+    for (const SteerableRoot& root : roots_) now_.steering.push_back(root.start);
+    now_.teeth = teeth;
+    now_.cost.assign(teeth.size(), 0);
+    now_.at_limit.assign(teeth.size(), false);
+    zoned_.resize(teeth.size());
+    plain_.resize(teeth.size());
+    for (std::size_t i = 0; i < teeth.size(); ++i)
+      plain_[i] = std::make_shared<SolidSurface>(tooth_surface(teeth[i].mesh, teeth[i].source));
+  }
+
+  ResolvedCollisions run() {
+    ResolvedCollisions resolved;
+    Round best = now_;
+    if (any_too_near()) {
+      measure();
+      best = now_;
+      std::map<ToothPair, double> extra;
+      for (int round = 0; round < options_.rounds; ++round) {
+        const FoundSteering found = find_least_steering(roots_, options_.search, extra);
+        const bool all_made = make(found, resolved.notes);
+        measure();
+        if (now_.all_missing() < best.all_missing() - enough) best = now_;
+        if (all_made && !ask_for_more(found, extra)) break;
+      }
+    }
+    now_ = std::move(best);
+    resolved.unresolved = unresolved();
+    resolved.steering = std::move(now_.steering);
+    resolved.teeth = std::move(now_.teeth);
+    resolved.cost_mm = std::move(now_.cost);
+    return resolved;
+  }
+
+ private:
+  double wanted() const { return options_.search.clearance; }
+
+  /// The smallest clearances of roots that are less than wanted.
+  std::map<ToothPair, double> too_near(const std::vector<std::shared_ptr<const SolidSurface>>& teeth) const {
+    std::vector<const SolidSurface*> surfaces;
+    for (const auto& tooth : teeth) surfaces.push_back(tooth.get());
+    NeighbourOptions near;
+    near.within = wanted() + enough;
+    std::map<ToothPair, double> found;
+    for (const NeighbourClearance& n : neighbour_clearances(surfaces, near))
+      if (const auto nearest = n.clearance.of_roots(); nearest && nearest->mm < wanted() - enough)
+        found[{n.first, n.second}] = nearest->mm;
+    return found;
+  }
+
+  bool any_too_near() const { return !too_near(plain_).empty(); }
+
+  /// Makes the teeth whose steering is another one. False if one could not be made: it stays as it is from now on.
+  bool make(const FoundSteering& found, std::vector<std::string>& notes) {
+    bool all = true;
+    for (std::size_t i = 0; i < roots_.size(); ++i) {
+      if (same(found.steering[i], now_.steering[i])) continue;
+      try {
+        SourcedTooth tooth = finish_(i, found.steering[i]);
+        plain_[i] = std::make_shared<SolidSurface>(tooth_surface(tooth.mesh, tooth.source));
+        now_.teeth[i] = std::move(tooth);
+        now_.steering[i] = found.steering[i];
+        now_.cost[i] = found.cost_mm[i];
+        now_.at_limit[i] = found.at_limit[i];
+        zoned_[i] = nullptr;
+      } catch (const NoResultError& error) {
+        notes.push_back(fmt::format("Tooth {} keeps its root, for it could not be made otherwise: {}", roots_[i].fdi,
+                                    error.what()));
+        roots_[i].start = now_.steering[i];
+        roots_[i].may_change = false;
+        zoned_[i] = nullptr;
+        all = false;
+      }
+    }
+    return all;
+  }
+
+  void measure() {
+    for (std::size_t i = 0; i < roots_.size(); ++i) {
+      if (zoned_[i]) continue;
+      TriangleMesh trial;
+      if (roots_[i].may_change) trial = {roots_[i].vertices(now_.steering[i]), roots_[i].triangles};
+      zoned_[i] = std::make_shared<SolidSurface>(in_zones(now_.teeth[i], trial, root_zones(roots_[i])));
+    }
+    now_.missing.clear();
+    for (std::size_t i = 0; i < roots_.size(); ++i)
+      for (std::size_t j = i + 1; j < roots_.size(); ++j)
+        if (const double missing = missing_where_roots_move(*zoned_[i], *zoned_[j], wanted()); missing > enough)
+          now_.missing[{i, j}] = missing;
+  }
+
+  /// Has the trial teeth keep more where they stood apart and the teeth made do not. False if there is nothing to gain.
+  bool ask_for_more(const FoundSteering& found, std::map<ToothPair, double>& extra) const {
+    bool any = false;
+    for (const auto& [pair, missing] : now_.missing) {
+      const auto of_trial = found.missing.find(pair);
+      const double unexpected = missing - (of_trial == found.missing.end() ? 0 : of_trial->second);
+      if (unexpected <= enough) continue;
+      extra[pair] += unexpected;
+      any = true;
+    }
+    return any;
+  }
+
+  std::vector<UnresolvedCollision> unresolved() const {
+    std::vector<std::shared_ptr<const SolidSurface>> teeth;
+    for (const SourcedTooth& tooth : now_.teeth)
+      teeth.push_back(std::make_shared<SolidSurface>(tooth_surface(tooth.mesh, tooth.source)));
+    std::vector<UnresolvedCollision> all;
+    for (const auto& [pair, mm] : too_near(teeth)) {
+      const auto [i, j] = pair;
+      const bool fixed_i = !roots_[i].may_change, fixed_j = !roots_[j].may_change;
+      CollisionCause cause = CollisionCause::not_found;
+      if (!now_.missing.contains(pair)) {
+        cause = fixed_i && fixed_j ? CollisionCause::at_limit : CollisionCause::necks;
+      } else if (now_.at_limit[i] || now_.at_limit[j] || fixed_i || fixed_j) {
+        cause = CollisionCause::at_limit;
+      }
+      all.push_back({i, j, mm, cause, sentence(roots_[i].fdi, roots_[j].fdi, mm, cause)});
+    }
+    return all;
+  }
+
+  std::string sentence(int first, int second, double mm, CollisionCause cause) const {
+    std::string text = mm < 0 ? fmt::format("Teeth {} and {} still run {:.2f} mm into each other", first, second, -mm)
+                              : fmt::format("Teeth {} and {} still come within {:.2f} mm of each other below the crown",
+                                            first, second, mm);
+    if (mm >= 0) text += fmt::format(", where {:.2f} mm were asked for", wanted());
+    switch (cause) {
+      case CollisionCause::necks:
+        return text + ": the crowns, which never move, leave no more at their necks.";
+      case CollisionCause::at_limit:
+        return text + ": their roots would have to be turned, bent or shortened more than they may.";
+      case CollisionCause::not_found:
+        break;
+    }
+    return text + ": no turn, bend or length was found that brings them apart.";
+  }
+
+  std::vector<SteerableRoot> roots_;
+  const FinishTooth& finish_;
+  ResolveOptions options_;
+  Round now_;
+  std::vector<std::shared_ptr<const SolidSurface>> plain_, zoned_;
+};
+
+}  // namespace
+
+ResolvedCollisions resolve_collisions(const std::vector<SteerableRoot>& roots, const std::vector<SourcedTooth>& teeth,
+                                      const FinishTooth& finish, const ResolveOptions& options) {
+  require_options_in_range(options.search);
+  if (options.rounds < 1) throw UsageError(fmt::format("{} rounds are too few to bring roots apart.", options.rounds));
+  if (roots.size() != teeth.size())
+    throw UsageError(fmt::format("{} teeth are given with {} roots for trials.", teeth.size(), roots.size()));
+  return Resolving(roots, teeth, finish, options).run();
+}
+
+}  // namespace rhizodont
