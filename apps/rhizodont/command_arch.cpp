@@ -99,6 +99,11 @@ void run(ArchCommand& command) {
   for (const ToothOfArch& tooth : arch.teeth) rooted += tooth.tooth.has_value();
   if (!command.quiet) {
     print_summary(arch);
+    for (const ToothClearance& c : arch.clearances)
+      for (const auto& mm : {c.root_root, c.root_crown, c.crown_root})
+        if (mm && *mm < 0)
+          fmt::print("{} and {} run into each other by {:.2f} mm at a root\n", c.first, c.second, -*mm);
+    for (const std::string& note : arch.notes) fmt::print("{}\n", note);
     fmt::print("{} of {} teeth have roots; all is in {}\n", rooted, arch.teeth.size(), command.output);
   }
   if (rooted < static_cast<int>(arch.teeth.size())) exit_with(static_cast<int>(ErrorCode::partial));
@@ -132,6 +137,10 @@ void add_arch_command(CLI::App& app) {
   arch->add_option("--root-length", command->lengths,
                    "Lengths of roots measured on X-rays, in mm: 36=14.2 11=13.0; the other teeth follow");
   arch->add_option("--root-lengths", command->lengths_file, "The same from a file with lines 36,14.2");
+  arch->add_flag("--resolve-collisions", command->options.resolve_collisions,
+                 "Turn, bend or shorten roots that come too near to other teeth, by the least change");
+  arch->add_option("--clearance", command->options.clearance_mm, "What they are to keep, mm, 0 to 3")
+      ->capture_default_str();
   arch->add_option("--e", command->options.tooth.e,
                    "Side of the lattice in mm, 0.2 to 2; new edges are about half of it")
       ->capture_default_str();

@@ -49,6 +49,12 @@ MeshFile crown_file(const ToothOfArch& tooth, const MeshFile& scan) {
   return file;
 }
 
+MeshFile with_clearance(MeshFile file, const ToothOfArch& tooth) {
+  VertexAttribute& clearance = file.vertex_attributes["clearance"];
+  for (const double c : tooth.clearance) clearance.values.push_back(static_cast<float>(c));
+  return file;
+}
+
 void append(TriangleMesh& all, const TriangleMesh& part) {
   const auto before = static_cast<std::int32_t>(all.vertices.size());
   all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
@@ -76,7 +82,8 @@ MeshFile arch_in_one(const CompletedArch& arch) {
                             {"uncertainty", std::move(uncertainty)},
                             {"clearance", std::move(clearance)}};
   file.comments = {"whole teeth: scanned crowns with predicted roots, not the patient's anatomy",
-                   "fdi: number of the tooth", "source: 0 scan, 1 transition, 2 predicted"};
+                   "fdi: number of the tooth", "source: 0 scan, 1 transition, 2 predicted",
+                   "clearance: signed distance from the nearest other tooth, mm, at most 10"};
   return file;
 }
 
@@ -246,7 +253,7 @@ std::vector<OutputFile> arch_files(const ScanInput& input, const CompletedArch& 
     const std::filesystem::path path = folder / name_of("tooth", tooth.fdi, how.tooth_format);
     CompletedTooth referring = *tooth.tooth;
     require_format_holds(referring, path);
-    files.push_back({path, mesh_file_bytes(path, tooth_file(referring, crown))});
+    files.push_back({path, mesh_file_bytes(path, with_clearance(tooth_file(referring, crown), tooth))});
     refer_to_file(referring.record, crown, path);
     files.push_back(
         {folder / name_of("tooth", tooth.fdi, "json"), completion_report(referring, {crown_sha256, {}, {}})});

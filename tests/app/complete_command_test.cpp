@@ -225,8 +225,8 @@ TEST_F(Complete, WrongUsage) {
   expect_error("complete " + crown + " --fdi 34 --cap cut -o tooth.ply", 2, "cut");
   expect_error("complete " + crown + " --fdi 34 -o tooth.doc", 2, "doc");
   expect_error("complete missing.ply --fdi 34 -o tooth.doc", 2, "doc");  // before any work
-  expect_error("complete missing.ply --fdi 34 -o /proc/nowhere/tooth.ply", 6, "nowhere");
-  expect_error("complete missing.ply --fdi 34 -o tooth.ply --report /proc/nowhere/report.json", 6, "nowhere");
+  expect_error("complete missing.ply --fdi 34 -o /proc/nowhere/tooth.ply", 7, "nowhere");
+  expect_error("complete missing.ply --fdi 34 -o tooth.ply --report /proc/nowhere/report.json", 7, "nowhere");
   EXPECT_FALSE(fs::exists(file("tooth.ply")));
 }
 
