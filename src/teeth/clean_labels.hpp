@@ -12,8 +12,9 @@
 namespace rhizodont {
 
 struct CleanLabelOptions {
-  double island_share = 0.02;   ///< [0, 1): a piece below this share of its tooth's largest one is an island
-  double island_area = 1;       ///< mm^2, >= 0: so is one below this area
+  double island_share =
+      0.02;                ///< [0, 1): a piece below this share of its tooth's largest one is an island, so is a hole
+  double island_area = 1;  ///< mm^2, >= 0: so is one below this area
   double least_tooth_area = 4;  ///< mm^2, >= 0: a number without a larger piece is a stray one
   double big_share = 0.25;      ///< (0, 1]: a piece of at least this share of the largest one may be a tooth
   double near_gap = 2;          ///< mm, >= 0: a smaller piece farther than this from the largest one is not its tooth's
