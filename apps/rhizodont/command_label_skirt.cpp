@@ -28,6 +28,7 @@ void run(const LabelSkirtCommand& command) {
   const std::vector<std::uint8_t> labels = label_by_restored(crown.mesh, restored.mesh, command.tolerance_mm);
   VertexAttribute attribute{AttributeType::uint8, {labels.begin(), labels.end()}};
   crown.vertex_attributes["tooth"] = std::move(attribute);
+  crown.triangle_attributes.clear();  // what else the scan's triangles carry is no label of the crown
   crown.comments = {"tooth: 1 on the restored tooth's surface, 0 skirt"};
   save_mesh(command.output, crown);
   const auto tooth = std::count(labels.begin(), labels.end(), 1);

@@ -14,10 +14,10 @@
 
 namespace rhizodont {
 
-/// Number type of a per-vertex attribute in a file.
+/// Number type of an attribute in a file.
 enum class AttributeType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
 
-/// One number per vertex. `values` holds what `type` can store exactly.
+/// One number per vertex, or per triangle. `values` holds what `type` can store exactly.
 struct VertexAttribute {
   AttributeType type = AttributeType::float32;
   std::vector<double> values;
@@ -48,7 +48,17 @@ struct MeshFile {
   std::vector<int> file_vertices = {};
   /// What reading found and mended or passed over, a sentence each, for the user. Not written.
   std::vector<std::string> notes = {};
+  /// Per triangle of the mesh, written to PLY only. Read from PLY, VTP and legacy VTK; all triangles of a polygon or a
+  /// strip have its value. Whoever changes the triangles changes these too, or clears them.
+  std::map<std::string, VertexAttribute> triangle_attributes = {};
+  /// Per vertex of the file, from 0, the mesh's vertex that it became, for values kept beside the file in its own
+  /// order. Empty where the numbers are the same, and for STL.
+  std::vector<int> mesh_vertices = {};
+  bool file_numbers_vertices = true;  ///< false for STL: its triangles repeat their corners' coordinates
 };
+
+/// Number of vertices in the file that was read; for STL, of the mesh.
+std::size_t vertices_in_file(const MeshFile& file);
 
 /// True if every coordinate, rounded to float, is still the same number.
 bool coordinates_fit_float(const TriangleMesh& mesh);
@@ -65,7 +75,8 @@ double round_to_float(TriangleMesh& mesh);
 /// Order of vertices and triangles is that of the file. Vertices with equal bits (-0 = +0) are merged: in STL all of
 /// them, numbered by first appearance; elsewhere where that closes a seam between triangles' borders, the first staying
 /// (`file_vertices`), so that sheets that only touch stay apart. Polygons are cut into a fan from their first corner,
-/// or, where that is wrong, along their inside. Colours per vertex become the attributes red, green and blue (uint8).
+/// or, where that is wrong, along their inside. Colours per vertex or triangle become the attributes red, green and
+/// blue (uint8).
 ///
 /// Throws InputError, with the line, the element or the byte concerned, if the file is missing, empty, damaged, cut
 /// off, something else than a mesh in one of these formats (then named), holds no triangle, a coordinate that is not a

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/colours.hpp"
 
+#include "io/notes.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,17 +15,31 @@ void add_colours(MeshFile& file, const std::vector<std::array<double, 3>>& colou
     file.notes.push_back("Not every vertex has a colour: the colours are left out.");
     return;
   }
+  put_colours(file.vertex_attributes, colours);
+}
+
+void put_colours(std::map<std::string, VertexAttribute>& attributes,
+                 const std::vector<std::array<double, 3>>& colours) {
   const bool unit = std::all_of(colours.begin(), colours.end(), [](const std::array<double, 3>& c) {
     return std::all_of(c.begin(), c.end(), [](double part) { return part <= 1; });
   });
   for (std::size_t i = 0; i < 3; ++i) {
-    VertexAttribute& attribute = file.vertex_attributes[std::array{"red", "green", "blue"}[i]];
-    attribute.type = AttributeType::uint8;
+    VertexAttribute& attribute = attributes[std::array{"red", "green", "blue"}[i]];
+    attribute = {AttributeType::uint8, {}};
+    attribute.values.reserve(colours.size());
     for (const std::array<double, 3>& colour : colours) {
       const double part = std::isfinite(colour[i]) ? colour[i] : 0;
       attribute.values.push_back(std::clamp(std::round(unit ? 255 * part : part), 0.0, 255.0));
     }
   }
+}
+
+void put_face_colours(MeshFile& file, const FaceList& faces, const std::vector<std::array<double, 3>>& colours) {
+  std::map<std::string, VertexAttribute> of_faces;
+  put_colours(of_faces, colours);
+  for (auto& [name, attribute] : of_faces)
+    file.triangle_attributes[name] = {attribute.type, faces.of_triangles(attribute.values)};
+  file.notes.emplace_back(triangle_colours_kept_note);
 }
 
 std::vector<std::array<double, 3>> colours_of(const std::vector<double>& values, std::size_t components) {

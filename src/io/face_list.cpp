@@ -16,6 +16,7 @@ void FaceList::add_polygon(std::span<const std::int32_t> corners) {
     corners_.insert(corners_.end(), corners.begin(), corners.end());
   }
   for (std::size_t k = 2; k < corners.size(); ++k) triangles_.push_back({corners[0], corners[k - 1], corners[k]});
+  end_face();
 }
 
 void FaceList::add_strip(std::span<const std::int32_t> corners) {
@@ -24,6 +25,15 @@ void FaceList::add_strip(std::span<const std::int32_t> corners) {
     const Triangle t{corners[k - 2 + odd], corners[k - 1 - odd], corners[k]};
     if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) triangles_.push_back(t);
   }
+  end_face();
+}
+
+void FaceList::end_face() { face_of_triangle_.resize(triangles_.size(), static_cast<std::int32_t>(face_count_++)); }
+
+std::vector<double> FaceList::of_triangles(const std::vector<double>& of_faces) const {
+  std::vector<double> values(triangles_.size());
+  for (std::size_t t = 0; t < values.size(); ++t) values[t] = of_faces[static_cast<std::size_t>(face_of_triangle_[t])];
+  return values;
 }
 
 void FaceList::move_to(MeshFile& file) {

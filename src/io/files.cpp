@@ -50,6 +50,19 @@ bool holds_exactly(const VertexAttribute& attribute) {
   });
 }
 
+void require_writable(const std::map<std::string, VertexAttribute>& attributes, std::size_t count,
+                      const char* of_what) {
+  for (const auto& [name, attribute] : attributes) {
+    if (attribute.values.size() != count)
+      throw InputError(
+          fmt::format("the attribute '{}' has {} values for {} {}", name, attribute.values.size(), count, of_what));
+    if (!holds_exactly(attribute))
+      throw InputError(fmt::format("the attribute '{}' has values that its type of number cannot hold", name));
+    if (name.empty() || name.find_first_of(" \t\r\n") != std::string::npos)
+      throw InputError(fmt::format("'{}' is no name for an attribute", name));
+  }
+}
+
 }  // namespace
 
 bool coordinates_fit_float(const TriangleMesh& mesh) {
@@ -75,15 +88,8 @@ void require_writable(const MeshFile& file) {
   if (file.mesh.triangles.empty()) throw InputError("a mesh without triangles is not written");
   require_valid_indices(file.mesh);
   require_finite(file.mesh.vertices);
-  for (const auto& [name, attribute] : file.vertex_attributes) {
-    if (attribute.values.size() != file.mesh.vertices.size())
-      throw InputError(fmt::format("the attribute '{}' has {} values for {} vertices", name, attribute.values.size(),
-                                   file.mesh.vertices.size()));
-    if (!holds_exactly(attribute))
-      throw InputError(fmt::format("the attribute '{}' has values that its type of number cannot hold", name));
-    if (name.empty() || name.find_first_of(" \t\r\n") != std::string::npos)
-      throw InputError(fmt::format("'{}' is no name for an attribute", name));
-  }
+  require_writable(file.vertex_attributes, file.mesh.vertices.size(), "vertices");
+  require_writable(file.triangle_attributes, file.mesh.triangles.size(), "triangles");
   for (const std::string& comment : file.comments)
     if (comment.find_first_of("\r\n") != std::string::npos) throw InputError("a comment in a file is one line");
 }

@@ -225,8 +225,9 @@ class BodyReader {
       if (element.name == "vertex") {
         read_vertices(element);
       } else if (element.name == "face") {
-        note_colours(element);
+        begin_face_attributes(element);
         read_corner_lists(element, [&](std::uint64_t) { faces_.add_polygon(corners_); });
+        faces_with_attributes_ = faces_.face_count();
       } else if (element.name == "tristrips") {
         read_corner_lists(element, [&](std::uint64_t index) { add_strips(index); });
       } else {
@@ -239,6 +240,7 @@ class BodyReader {
                       "the crown is not "
                       "whole, the file is damaged.",
                       rest));
+    give_face_attributes();
     faces_.move_to(file_);
     return std::move(file_);
   }
@@ -336,11 +338,22 @@ class BodyReader {
     const bool has_corners = std::any_of(element.properties.begin(), element.properties.end(), is_corner_list);
     if (!has_corners && element.count > 0)
       throw InputError("the file's faces have no list of vertices" + instead(element));
+    std::vector<std::vector<double>*> targets;  // per property, null where its values are not kept
+    for (const Property& property : element.properties) {
+      const auto place = property.count_type ? face_attributes_.end() : face_attributes_.find(property.name);
+      targets.push_back(element.name != "face" || place == face_attributes_.end() ? nullptr : &place->second.values);
+    }
     faces_.reserve(faces_.size() + element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
-      for (const Property& property : element.properties) {
-        if (!is_corner_list(property)) {
-          property.count_type ? skip_list(property, element, i) : static_cast<void>(next(property.type, element, i));
+      for (std::size_t p = 0; p < targets.size(); ++p) {
+        const Property& property = element.properties[p];
+        if (property.count_type && !is_corner_list(property)) {
+          skip_list(property, element, i);
+          continue;
+        }
+        if (!property.count_type) {
+          const double value = next(property.type, element, i);
+          if (targets[p] != nullptr) targets[p]->push_back(value);
           continue;
         }
         corners_.clear();
@@ -366,10 +379,25 @@ class BodyReader {
     }
   }
 
-  void note_colours(const Element& element) {
-    if (std::any_of(element.properties.begin(), element.properties.end(),
-                    [](const Property& p) { return p.name == "red" || p.name == "diffuse_red"; }))
-      file_.notes.emplace_back(triangle_colours_note);
+  void begin_face_attributes(const Element& element) {
+    for (const Property& p : element.properties) {
+      if (p.count_type) continue;
+      face_attributes_[p.name] = {p.type, {}};
+      face_attributes_[p.name].values.reserve(element.count);
+    }
+  }
+
+  // Triangles of strips have no values; then none has.
+  void give_face_attributes() {
+    if (face_attributes_.empty()) return;
+    if (faces_with_attributes_ != faces_.face_count()) {
+      file_.notes.emplace_back("Values of the faces were passed over: the strips beside them have none.");
+      return;
+    }
+    if (face_attributes_.contains("red") || face_attributes_.contains("diffuse_red"))
+      file_.notes.emplace_back(triangle_colours_kept_note);
+    for (auto& [name, attribute] : face_attributes_)
+      file_.triangle_attributes[name] = {attribute.type, faces_.of_triangles(attribute.values)};
   }
 
   // What the faces have in place of a list of vertices.
@@ -392,6 +420,8 @@ class BodyReader {
   Header header_;
   Body body_;
   std::vector<std::int32_t> corners_;
+  std::map<std::string, VertexAttribute> face_attributes_;  // values per face of the file
+  std::size_t faces_with_attributes_ = 0;
   FaceList faces_;
   MeshFile file_;
 };
@@ -418,14 +448,18 @@ std::string write_ply(const MeshFile& file) {
   for (const char axis : {'x', 'y', 'z'}) bytes += fmt::format("property {} {}\n", name_of(real), axis);
   for (const auto& [name, attribute] : file.vertex_attributes)
     bytes += fmt::format("property {} {}\n", name_of(attribute.type), name);
-  bytes += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", mesh.triangles.size());
+  bytes += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", mesh.triangles.size());
+  for (const auto& [name, attribute] : file.triangle_attributes)
+    bytes += fmt::format("property {} {}\n", name_of(attribute.type), name);
+  bytes += "end_header\n";
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     for (int i = 0; i < 3; ++i) append(bytes, real, mesh.vertices[v][i]);
     for (const auto& [name, attribute] : file.vertex_attributes) append(bytes, attribute.type, attribute.values[v]);
   }
-  for (const Triangle& triangle : mesh.triangles) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     append(bytes, AttributeType::uint8, 3);
-    for (const std::int32_t v : triangle) append(bytes, AttributeType::int32, v);
+    for (const std::int32_t v : mesh.triangles[t]) append(bytes, AttributeType::int32, v);
+    for (const auto& [name, attribute] : file.triangle_attributes) append(bytes, attribute.type, attribute.values[t]);
   }
   return bytes;
 }

@@ -40,6 +40,17 @@ std::string printable(std::string sentence) {
   return sentence;
 }
 
+void keep_triangles(std::vector<double>& values, const std::vector<std::int64_t>& dropped) {
+  std::size_t kept = 0, next = 0;
+  for (std::size_t t = 0; t < values.size(); ++t) {
+    if (next < dropped.size() && static_cast<std::size_t>(dropped[next]) == t)
+      ++next;
+    else
+      values[kept++] = values[t];
+  }
+  values.resize(kept);
+}
+
 void take_out_repeated_corners(MeshFile& file) {
   std::vector<Triangle>& triangles = file.mesh.triangles;
   std::size_t kept = 0;
@@ -50,6 +61,8 @@ void take_out_repeated_corners(MeshFile& file) {
     else
       triangles[kept++] = c;
   }
+  if (kept == triangles.size()) return;
+  for (auto& [name, attribute] : file.triangle_attributes) keep_triangles(attribute.values, file.dropped_triangles);
   triangles.resize(kept);
   if (triangles.empty())
     throw InputError("the file holds no triangle with three different corners", file.dropped_triangles,
@@ -101,6 +114,10 @@ std::string read_file_bytes(const fs::path& path) {
 }
 
 std::string read_standard_input() { return all_bytes(stdin); }
+
+std::size_t vertices_in_file(const MeshFile& file) {
+  return file.mesh_vertices.empty() ? file.mesh.vertices.size() : file.mesh_vertices.size();
+}
 
 void finish_reading(MeshFile& file) {
   if (file.mesh.triangles.empty()) throw InputError("the file holds no triangles");

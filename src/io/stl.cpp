@@ -134,11 +134,21 @@ bool is_binary_stl_of_other_size(std::string_view bytes) {
   return are_triangles(bytes, 0, announced > 0 ? std::min(announced, present) : present);
 }
 
-MeshFile read_stl(std::string_view bytes) {
+namespace {
+
+MeshFile read_any(std::string_view bytes) {
   if (is_exact_binary_stl(bytes)) return read_binary(bytes, triangles_with_room(bytes));
   if (is_stl_text(bytes)) return read_stl_text(bytes);
   if (bytes.size() < header_size) throw InputError("the file is too short for an STL file: it is damaged or cut off");
   return read_of_other_size(bytes);
+}
+
+}  // namespace
+
+MeshFile read_stl(std::string_view bytes) {
+  MeshFile file = read_any(bytes);
+  file.file_numbers_vertices = false;
+  return file;
 }
 
 std::string write_stl(const MeshFile& file) {

@@ -86,7 +86,6 @@ class VtkReader {
                                         line, shown(*keyword)));
       break;
     }
-    if (has_cell_colours_) file_.notes.emplace_back(triangle_colours_note);
     faces_.move_to(file_);
     return std::move(file_);
   }
@@ -174,17 +173,21 @@ class VtkReader {
     } else if (same_word(keyword, "points")) {
       read_points(words);
     } else if (same_word(keyword, "polygons")) {
+      strips_first_ |= strips_ > 0;
       read_cells(words, [&](std::span<const std::int32_t> corners) { faces_.add_polygon(corners); });
     } else if (same_word(keyword, "triangle_strips")) {
-      read_cells(words, [&](std::span<const std::int32_t> corners) { faces_.add_strip(corners); });
+      read_cells(words, [&](std::span<const std::int32_t> corners) {
+        faces_.add_strip(corners);
+        ++strips_;
+      });
     } else if (same_word(keyword, "vertices") || same_word(keyword, "lines")) {
-      read_cells(words, [](std::span<const std::int32_t>) {});
+      read_cells(words, [&](std::span<const std::int32_t>) { ++cells_before_; });
     } else if (same_word(keyword, "point_data")) {
       tuples_ = count(words, "points");
-      of_points_ = true;
+      values_of_ = ValuesOf::points;
     } else if (same_word(keyword, "cell_data")) {
       tuples_ = count(words, "cells");
-      of_points_ = false;
+      values_of_ = ValuesOf::cells;
     } else if (same_word(keyword, "metadata")) {
       while (cursor_.remaining() > 0 && cursor_.rest_of_line().find_first_not_of(" \t") != std::string_view::npos) {
       }
@@ -317,23 +320,42 @@ class VtkReader {
     std::vector<double> numbers = values(of, tuples, components);
     // bytes in threes or fours are colours too
     const bool is_colour = (components == 3 || components == 4) && (called_colour || of.number == VtkNumber::uint8);
-    has_cell_colours_ |= !of_points_ && is_colour;
-    if (!of_points_ || numbers.empty() || of.kind != ArrayType::Kind::number || (components != 1 && !is_colour)) return;
-    if (tuples != file_.mesh.vertices.size()) {
+    if (values_of_ == ValuesOf::file || numbers.empty() || of.kind != ArrayType::Kind::number ||
+        (components != 1 && !is_colour))
+      return;
+    const bool of_points = values_of_ == ValuesOf::points;
+    const std::size_t expected = of_points ? file_.mesh.vertices.size() : cells_before_ + faces_.face_count();
+    if (tuples != expected) {
+      const char* what = of_points ? "points" : "cells";
       file_.notes.push_back(
-          fmt::format("Values of the points were passed over: the array '{:.60}' has {} values for {} points.", name,
-                      tuples, file_.mesh.vertices.size()));
-    } else if (is_colour) {
-      add_colours(file_, colours_of(numbers, components));
-    } else {
-      file_.vertex_attributes[name] = {attribute_type(of.number), std::move(numbers)};
+          fmt::format("Values of the {} were passed over: the array '{:.60}' has {} values for {} {}.", what, name,
+                      tuples, expected, what));
+      return;
     }
+    if (!of_points) numbers = of_faces(std::move(numbers), components);
+    if (is_colour && of_points)
+      add_colours(file_, colours_of(numbers, components));
+    else if (is_colour)
+      put_face_colours(file_, faces_, colours_of(numbers, components));
+    else if (of_points)
+      file_.vertex_attributes[name] = {attribute_type(of.number), std::move(numbers)};
+    else
+      file_.triangle_attributes[name] = {attribute_type(of.number), faces_.of_triangles(numbers)};
+  }
+
+  // Cells are numbered by kind: points, lines, polygons, strips, whichever way the kinds stand in the file.
+  std::vector<double> of_faces(std::vector<double> of_cells, std::uint64_t components) const {
+    of_cells.erase(of_cells.begin(), of_cells.begin() + static_cast<std::ptrdiff_t>(cells_before_ * components));
+    if (strips_first_)
+      std::rotate(of_cells.begin(), of_cells.end() - static_cast<std::ptrdiff_t>(strips_ * components), of_cells.end());
+    return of_cells;
   }
 
   TextCursor cursor_;
   bool binary_ = false;
-  std::uint64_t tuples_ = 0;
-  bool of_points_ = false, has_cell_colours_ = false, has_cells_ = false;
+  enum class ValuesOf { file, points, cells } values_of_ = ValuesOf::file;
+  std::uint64_t tuples_ = 0, cells_before_ = 0, strips_ = 0;
+  bool has_cells_ = false, strips_first_ = false;
   FaceList faces_;
   MeshFile file_;
 };

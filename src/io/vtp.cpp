@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VTK XML PolyData: points, polygons, triangle strips and one-component point data.
+// VTK XML PolyData: points, polygons, triangle strips and one-component data of points and cells.
 #include "io/attribute_types.hpp"
 #include "io/colours.hpp"
 #include "io/cursors.hpp"
@@ -76,11 +76,19 @@ class PieceReader {
     read_points(piece);
     added_ = file_.mesh.vertices.size() - first;
     first_ = static_cast<std::int64_t>(first);
+    const std::size_t first_face = faces_.face_count();
     read_cells(piece.child("Polys"), false);
     read_cells(piece.child("Strips"), true);
-    if (with_attributes) read_attributes(piece.child("PointData"));
-    const auto cell_data = piece.child("CellData").children("DataArray");
-    if (std::any_of(cell_data.begin(), cell_data.end(), is_colour)) file_.notes.emplace_back(triangle_colours_note);
+    added_faces_ = faces_.face_count() - first_face;
+    if (with_attributes) {
+      read_attributes(piece.child("PointData"), "points",
+                      [&](const std::string& name, VtkArray array) { take_of_points(name, std::move(array)); });
+      // cells are numbered through all kinds in this order
+      cells_before_ =
+          named_array(piece.child("Verts"), "offsets").size() + named_array(piece.child("Lines"), "offsets").size();
+      read_attributes(piece.child("CellData"), "cells",
+                      [&](const std::string& name, VtkArray array) { take_of_cells(name, std::move(array)); });
+    }
   }
 
  private:
@@ -129,24 +137,40 @@ class PieceReader {
   }
 
   // Values beside the mesh are no reason to refuse it.
-  void read_attributes(const pugi::xml_node& data) {
+  template <class Take>
+  void read_attributes(const pugi::xml_node& data, const char* of_what, const Take& take) {
     for (const pugi::xml_node& node : data.children("DataArray")) {
       const std::string name = node.attribute("Name").as_string();
       const int components = node.attribute("NumberOfComponents").as_int(1);
       const bool is_text = std::string_view(node.attribute("type").as_string()) == "String";
       if (name.empty() || is_text || (components != 1 && !is_colour(node))) continue;
       try {
-        take_attribute(name, read_vtk_array(node, storage_));
+        take(name, read_vtk_array(node, storage_));
       } catch (const InputError& error) {
-        file_.notes.push_back(fmt::format("Values of the points were passed over: {}.", error.what()));
+        file_.notes.push_back(fmt::format("Values of the {} were passed over: {}.", of_what, error.what()));
       }
     }
   }
 
-  void take_attribute(const std::string& name, VtkArray array) {
-    if (array.values.size() != added_ * array.components)
+  static void require_size(const std::string& name, const VtkArray& array, std::size_t count, const char* of_what) {
+    if (array.values.size() != count * array.components)
       throw InputError(
-          fmt::format("the array '{:.60}' has {} values for {} points", name, array.values.size(), added_));
+          fmt::format("the array '{:.60}' has {} values for {} {}", name, array.values.size(), count, of_what));
+  }
+
+  void take_of_cells(const std::string& name, VtkArray array) {
+    require_size(name, array, cells_before_ + added_faces_, "cells");
+    array.values.erase(array.values.begin(),
+                       array.values.begin() + static_cast<std::ptrdiff_t>(cells_before_ * array.components));
+    if (array.components == 1) {
+      file_.triangle_attributes[name] = {array.type, faces_.of_triangles(array.values)};
+      return;
+    }
+    put_face_colours(file_, faces_, colours_of(array.values, array.components));
+  }
+
+  void take_of_points(const std::string& name, VtkArray array) {
+    require_size(name, array, added_, "points");
     if (array.components == 1)
       file_.vertex_attributes[name] = {array.type, std::move(array.values)};
     else
@@ -156,7 +180,7 @@ class PieceReader {
   const VtkStorage& storage_;
   MeshFile& file_;
   FaceList& faces_;
-  std::size_t added_ = 0;
+  std::size_t added_ = 0, added_faces_ = 0, cells_before_ = 0;
   std::int64_t first_ = 0;
 };
 

@@ -155,6 +155,7 @@ void weld_seams(MeshFile& file) {
   file.notes.push_back(counted(first.size() - kept.size(), "vertex was", "vertices were") +
                        " merged with another one at exactly the same place.");
   file.file_vertices = std::move(kept);
+  file.mesh_vertices.assign(number.begin(), number.end());
 }
 
 }  // namespace rhizodont

@@ -31,10 +31,10 @@ class EqualPoints {
 
 /// Merges vertices with equal coordinates where that closes a seam: where two triangles, or more, each have a border on
 /// one and the same edge, where an edge has no length, and where two triangles are the same. The first stays, with its
-/// attributes; the order is kept; `file.file_vertices` says which they were. An edge that has its two triangles already
-/// is left alone, and so are sheets that touch in a point only: their file says that they are not joined there, and
-/// joining them would make a vertex that no surface has. Notes how many were merged. Precondition: indices in range,
-/// finite coordinates.
+/// attributes; the order is kept; `file.file_vertices` and `file.mesh_vertices` say which they were. An edge that has
+/// its two triangles already is left alone, and so are sheets that touch in a point only: their file says that they are
+/// not joined there, and joining them would make a vertex that no surface has. Notes how many were merged.
+/// Precondition: indices in range, finite coordinates.
 void weld_seams(MeshFile& file);
 
 }  // namespace rhizodont

@@ -65,7 +65,12 @@ std::string binary_5() {
   return b.add_text("\n").str();
 }
 
-TEST(Vtk, TextWithValuesOfEveryKind) { expect_square(load_bytes("a.vtk", text_4)); }
+TEST(Vtk, TextWithValuesOfEveryKind) {
+  const MeshFile file = load_bytes("a.vtk", text_4);
+  expect_square(file);
+  EXPECT_EQ(file.triangle_attributes.at("Label").values, (std::vector<double>{3, 3, 4, 4}));
+  EXPECT_EQ(file.triangle_attributes.size(), 1U);
+}
 
 TEST(Vtk, BytesOfVersion5) {
   const std::string bytes = binary_5();
