@@ -17,16 +17,28 @@
 namespace rhizodont {
 namespace {
 
+/// How far apart two triangles lie at least, by the shadows that they throw along a direction of unit length.
+double least_gap_along(const Eigen::Vector3d& along, const Corners& first, const Corners& second) {
+  return std::min({along.dot(first[0]), along.dot(first[1]), along.dot(first[2])}) -
+         std::max({along.dot(second[0]), along.dot(second[1]), along.dot(second[2])});
+}
+
 /// The smallest distance of two parts; 0 where they meet.
 std::optional<Approach> distance_of_parts(const SolidSurface& first, int i, const SolidSurface& second, int j,
                                           double within) {
   std::optional<Approach> nearest;
+  Eigen::Vector3d along = Eigen::Vector3d::Zero();
   const SolidSurface::Part &mine = first.part(i), &other = second.part(j);
   mine.tree.visit_nearer_pairs(other.tree, within * within, [&](int m, int n, double bound) {
     const int s = mine.triangles[at(m)], t = other.triangles[at(n)];
-    const TriangleApproach found = nearest_of_triangles(first.corners(s), second.corners(t));
+    const Corners mine_corners = first.corners(s), other_corners = second.corners(t);
+    // Walls that face each other lie apart along much the same direction.
+    if (const double gap = least_gap_along(along, mine_corners, other_corners); gap > 0 && gap * gap >= bound)
+      return bound;
+    const TriangleApproach found = nearest_of_triangles(mine_corners, other_corners);
     if (!(found.squared_distance < bound)) return bound;
     nearest = Approach{std::sqrt(found.squared_distance), found.on_first, found.on_second, s, t};
+    along = (found.on_first - found.on_second).stableNormalized();
     return found.squared_distance;
   });
   return nearest;
@@ -208,17 +220,16 @@ std::vector<NeighbourClearance> neighbour_clearances(const std::vector<const Sol
   return neighbours;
 }
 
-std::vector<std::vector<double>> vertex_clearances(const std::vector<const SolidSurface*>& teeth,
-                                                   const NeighbourOptions& options) {
-  require_bound(options.within);
+std::vector<std::vector<double>> vertex_clearances(const std::vector<const SolidSurface*>& teeth, double within) {
+  require_bound(within);
   std::vector<std::vector<double>> clearances(teeth.size());
   for (std::size_t i = 0; i < teeth.size(); ++i) {
     if (!teeth[i]) continue;
     const std::vector<Point>& vertices = teeth[i]->mesh().vertices;
     std::vector<const SolidSurface*> near;
     for (std::size_t j = 0; j < teeth.size(); ++j)
-      if (j != i && teeth[j] && gap(*teeth[i], *teeth[j]) < options.within) near.push_back(teeth[j]);
-    clearances[i].assign(vertices.size(), options.within);
+      if (j != i && teeth[j] && gap(*teeth[i], *teeth[j]) < within) near.push_back(teeth[j]);
+    clearances[i].assign(vertices.size(), within);
     tbb::parallel_for(std::size_t{0}, vertices.size(), [&](std::size_t v) {
       for (const SolidSurface* other : near)
         if (const auto found = other->signed_distance(vertices[v], std::max(0.0, clearances[i][v])))

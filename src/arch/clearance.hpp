@@ -83,7 +83,7 @@ inline constexpr const char* clearance_attribute = "clearance";
 
 /// Per tooth and vertex the signed distance (mm) from the nearest of the other teeth: negative inside of one, and
 /// `within` where none is nearer. Empty for a tooth that is null.
-std::vector<std::vector<double>> vertex_clearances(const std::vector<const SolidSurface*>& teeth,
-                                                   const NeighbourOptions& options = {});
+/// @param within  mm, > 0; the farther, the longer it takes
+std::vector<std::vector<double>> vertex_clearances(const std::vector<const SolidSurface*>& teeth, double within = 3);
 
 }  // namespace rhizodont

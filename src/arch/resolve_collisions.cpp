@@ -48,11 +48,13 @@ struct Round {
   std::vector<SourcedTooth> teeth;
   std::vector<double> cost;
   std::vector<bool> at_limit;
-  std::map<ToothPair, double> missing;  // where roots move; of finished teeth
+  std::map<ToothPair, std::vector<double>> missing;  // per pair of zones, where roots move; of finished teeth
 
-  double all_missing() const {
+  /// As the search weighs it: to run into another root is ten times as bad as to lack room.
+  double all_missing(double wanted) const {
     double sum = 0;
-    for (const auto& [pair, mm] : missing) sum += mm;
+    for (const auto& [pair, zones] : missing)
+      for (const double mm : zones) sum += mm + 10 * std::max(0.0, mm - wanted);
     return sum;
   }
 };
@@ -83,7 +85,7 @@ class Resolving {
         const FoundSteering found = find_least_steering(roots_, options_.search, extra);
         const bool all_made = make(found, resolved.notes);
         measure();
-        if (now_.all_missing() < best.all_missing() - enough) best = now_;
+        if (now_.all_missing(wanted()) < best.all_missing(wanted()) - enough) best = now_;
         if (all_made && !ask_for_more(found, extra)) break;
       }
     }
@@ -147,9 +149,11 @@ class Resolving {
     }
     now_.missing.clear();
     for (std::size_t i = 0; i < roots_.size(); ++i)
-      for (std::size_t j = i + 1; j < roots_.size(); ++j)
-        if (const double missing = missing_where_roots_move(*zoned_[i], *zoned_[j], wanted()); missing > enough)
-          now_.missing[{i, j}] = missing;
+      for (std::size_t j = i + 1; j < roots_.size(); ++j) {
+        std::vector<double> missing = missing_where_roots_move(*zoned_[i], *zoned_[j], wanted());
+        if (std::any_of(missing.begin(), missing.end(), [](double mm) { return mm > enough; }))
+          now_.missing[{i, j}] = std::move(missing);
+      }
   }
 
   /// Has the trial teeth keep more where they stood apart and the teeth made do not. False if there is nothing to gain.
@@ -157,7 +161,10 @@ class Resolving {
     bool any = false;
     for (const auto& [pair, missing] : now_.missing) {
       const auto of_trial = found.missing.find(pair);
-      const double unexpected = missing - (of_trial == found.missing.end() ? 0 : of_trial->second);
+      double unexpected = 0;
+      for (std::size_t z = 0; z < missing.size(); ++z)
+        if (missing[z] > enough)
+          unexpected = std::max(unexpected, missing[z] - (of_trial == found.missing.end() ? 0 : of_trial->second[z]));
       if (unexpected <= enough) continue;
       extra[pair] += unexpected;
       any = true;
@@ -173,7 +180,7 @@ class Resolving {
     for (const auto& [pair, mm] : too_near(teeth)) {
       const auto [i, j] = pair;
       const bool fixed_i = !roots_[i].may_change, fixed_j = !roots_[j].may_change;
-      CollisionCause cause = CollisionCause::not_found;
+      CollisionCause cause = CollisionCause::out_of_proportion;
       if (!now_.missing.contains(pair)) {
         cause = fixed_i && fixed_j ? CollisionCause::at_limit : CollisionCause::necks;
       } else if (now_.at_limit[i] || now_.at_limit[j] || fixed_i || fixed_j) {
@@ -194,10 +201,11 @@ class Resolving {
         return text + ": the crowns, which never move, leave no more at their necks.";
       case CollisionCause::at_limit:
         return text + ": their roots would have to be turned, bent or shortened more than they may.";
-      case CollisionCause::not_found:
+      case CollisionCause::out_of_proportion:
         break;
     }
-    return text + ": no turn, bend or length was found that brings them apart.";
+    return text +
+           ": so close to the crowns turning and bending hardly move their roots, and more would be out of proportion.";
   }
 
   std::vector<SteerableRoot> roots_;

@@ -35,9 +35,9 @@ struct ResolveOptions {
 
 /// Why roots stay nearer to each other than asked for.
 enum class CollisionCause {
-  necks,      ///< they are as near where they leave the crowns, which never move
-  at_limit,   ///< they would have to be turned, bent or shortened more than they may
-  not_found,  ///< no steering was found that brings them apart
+  necks,              ///< they are as near where they leave the crowns, which never move
+  at_limit,           ///< they would have to be turned, bent or shortened more than they may
+  out_of_proportion,  ///< where they are near, turning and bending hardly move them, so that little was done
 };
 
 /// Two teeth whose roots, or a root and a crown, stay nearer than asked for.

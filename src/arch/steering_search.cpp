@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -20,11 +21,13 @@ namespace rhizodont {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-constexpr double reach = 1.0;           // mm beyond what is wanted from which on zones have no say in a step
-constexpr double to_be_sure = 0.01;     // mm that are sought beyond what is wanted, for rounding
-constexpr double missing_weight = 4e3;  // of a square of what is missing, against one of change
-constexpr double longest_step = 0.7;    // mm, of each variable
-constexpr double least_step = 1e-3;
+constexpr double reach = 1.0;         // mm beyond what is wanted from which on zones have no say in a step
+constexpr double to_be_sure = 0.01;   // mm that are sought beyond what is wanted, for rounding
+constexpr double longest_step = 0.7;  // mm, of each variable
+constexpr double least_step = 5e-3;
+constexpr double not_touching = 0.05;  // mm: what comes nearer counts as a collision
+// Per mm. A root may move far to be out of another one; for more room it may not where it hardly gains any.
+constexpr WishPrice price_of_collision{4e3, 4e3}, price_of_room{4e3, 40};
 constexpr int turns = 4;  // variables per tooth: tip, torque, bend, length
 
 using Change = Eigen::Vector4d;  // what tip, torque, bend and length of one tooth cost, mm
@@ -137,18 +140,9 @@ class Search {
   }
 
   void run() {
-    double longest = longest_step;
-    for (int step = 0; step < options_.steps && missing_anything() && longest > least_step; ++step) {
-      const Eigen::VectorXd x = proposal(longest);
-      if ((x - now_.x).cwiseAbs().maxCoeff() < least_step) break;
-      Stand next = moved_to(x);
-      if (next.merit < now_.merit) {
-        now_ = std::move(next);
-        longest = std::min(longest_step, 1.5 * longest);
-      } else {
-        longest *= 0.4;
-      }
-    }
+    approach();
+    if (leap_apart()) approach();
+    if (leave_small_changes()) approach();
   }
 
   FoundSteering result() const {
@@ -157,21 +151,95 @@ class Search {
       const Change x = change_of(now_.x, i);
       found.steering.push_back(levers_[i].steering(x, true));
       found.cost_mm.push_back(levers_[i].cost(found.steering.back()).norm());
-      const Change slack = (x - levers_[i].low).cwiseMin(levers_[i].high - x);
-      found.at_limit.push_back((slack.head<3>().array() < 1e-6).any() ||
-                               (x[3] > 0 && levers_[i].high[3] - x[3] < 1e-6));
+      const auto& lever = levers_[i];
+      found.at_limit.push_back((x.array() != 0 && (x - lever.low).cwiseMin(lever.high - x).array() < 1e-6 &&
+                                lever.low.array() < lever.high.array())
+                                   .any());
     }
     for (std::size_t k = 0; k < pairs_.size(); ++k) {
-      double missing = 0;
-      for_each_missing(k, now_, 0, [&](int, const Approach& approach, double least) {
-        missing = std::max(missing, least - to_be_sure - approach.mm);
+      std::vector<double> missing(pairs_[k].least.size(), 0);
+      for_each_missing(k, now_, 0, [&](int z, const Approach& approach, double least) {
+        missing[at(z)] = std::max(0.0, least - to_be_sure - approach.mm);
       });
-      if (missing > 0) found.missing[pairs_[k].teeth] = missing;
+      if (std::any_of(missing.begin(), missing.end(), [](double mm) { return mm > 0; }))
+        found.missing[pairs_[k].teeth] = std::move(missing);
     }
     return found;
   }
 
  private:
+  void approach() {
+    double longest = longest_step;
+    for (int step = 0; step < options_.steps && missing_anything() && longest > least_step; ++step) {
+      const Eigen::VectorXd x = proposal(longest);
+      if ((x - now_.x).cwiseAbs().maxCoeff() < least_step) break;
+      Stand next = moved_to(x);
+      if (next.merit < now_.merit) {
+        const bool hardly = next.merit > (1 - 1e-4) * now_.merit;
+        now_ = std::move(next);
+        if (hardly) break;
+        longest = std::min(longest_step, 1.5 * longest);
+      } else {
+        longest *= 0.4;
+      }
+    }
+  }
+
+  bool run_into_each_other(std::size_t k) const {
+    bool collide = false;
+    for_each_missing(k, now_, 0, [&](int z, const Approach& approach, double) {
+      collide |= approach.mm < 0 && (moves(z / root_zone_count) || moves(z % root_zone_count));
+    });
+    return collide;
+  }
+
+  /// Roots that have gone past each other's middle see the nearest way out on the wrong side, and small steps leave
+  /// them there: tries large ones, for each pair still in each other. False if none is better.
+  bool leap_apart() {
+    constexpr std::array<std::array<int, 4>, 6> ways{
+        // tip and torque of the first tooth, then of the second
+        {{1, 0, -1, 0}, {-1, 0, 1, 0}, {1, 0, 1, 0}, {-1, 0, -1, 0}, {0, 1, 0, -1}, {0, -1, 0, 1}}};
+    bool any = false;
+    for (std::size_t k = 0; k < pairs_.size(); ++k) {
+      if (!run_into_each_other(k)) continue;
+      const auto [i, j] = pairs_[k].teeth;
+      Stand best = now_;
+      for (const double far : {1.0, 2.0, 3.5})
+        for (const auto& way : ways) {
+          Eigen::VectorXd x = now_.x;
+          for (const auto& [tooth, first] : {std::pair(i, std::size_t{0}), std::pair(j, std::size_t{2})}) {
+            auto change = x.segment<turns>(turns * static_cast<Eigen::Index>(tooth));
+            change[0] += far * way[first];
+            change[1] += far * way[first + 1];
+            change = change.cwiseMax(levers_[tooth].low).cwiseMin(levers_[tooth].high).eval();
+          }
+          Stand there = moved_to(x);
+          if (there.merit < best.merit) best = std::move(there);
+        }
+      any |= best.merit < now_.merit;
+      now_ = std::move(best);
+    }
+    return any;
+  }
+
+  /// Takes back what adds little to a root's change, for good: a turn alone is easier told than one with a trace of
+  /// everything. False if there is no such thing.
+  bool leave_small_changes() {
+    constexpr double little = 0.1;  // of the whole change, and mm
+    Stand next = now_;
+    for (std::size_t i = 0; i < roots_.size(); ++i) {
+      auto x = next.x.segment<turns>(turns * static_cast<Eigen::Index>(i));
+      const double whole = x.norm();
+      for (Eigen::Index k = 0; k < turns; ++k) {
+        if (x[k] == 0 || std::abs(x[k]) > little * std::min(1.0, whole)) continue;
+        x[k] = levers_[i].low[k] = levers_[i].high[k] = 0;
+      }
+    }
+    if (next.x == now_.x) return false;
+    now_ = moved_to(next.x);
+    return true;
+  }
+
   static Change change_of(const Eigen::VectorXd& x, std::size_t tooth) {
     return x.segment<turns>(turns * static_cast<Eigen::Index>(tooth));
   }
@@ -198,7 +266,8 @@ class Search {
     double sum = stand.x.squaredNorm();
     for (std::size_t k = 0; k < pairs_.size(); ++k)
       for_each_missing(k, stand, 0, [&](int, const Approach& approach, double least) {
-        sum += missing_weight * (least - approach.mm) * (least - approach.mm);
+        sum += price_of(least - approach.mm, price_of_room);
+        sum += price_of(std::max(0.0, std::min(least, not_touching) - approach.mm), price_of_collision);
       });
     return sum;
   }
@@ -301,6 +370,11 @@ class Search {
     for (std::size_t k = 0; k < pairs_.size(); ++k)
       for_each_missing(k, now_, reach, [&](int, const Approach& approach, double least) {
         wishes.push_back(linear_wish(pairs_[k].teeth, approach, least, moving));
+        wishes.back().price = price_of_room;
+        if (approach.mm > not_touching + reach) return;
+        wishes.push_back(wishes.back());
+        wishes.back().least -= std::max(0.0, least - not_touching);
+        wishes.back().price = price_of_collision;
       });
     Eigen::VectorXd low = now_.x, high = now_.x;
     for (std::size_t i = 0; i < roots_.size(); ++i) {
@@ -308,7 +382,7 @@ class Search {
       low.segment<turns>(first) = (change_of(now_.x, i).array() - longest).matrix().cwiseMax(levers_[i].low);
       high.segment<turns>(first) = (change_of(now_.x, i).array() + longest).matrix().cwiseMin(levers_[i].high);
     }
-    return least_change(wishes, low, high, missing_weight);
+    return least_change(wishes, low, high);
   }
 
   LinearWish linear_wish(const ToothPair& teeth, const Approach& approach, double least,
@@ -390,14 +464,15 @@ std::vector<int> root_zones(const SteerableRoot& root) {
   return zones;
 }
 
-double missing_where_roots_move(const SolidSurface& first, const SolidSurface& second, double wanted) {
-  if (first.box().squared_gap(second.box()) > wanted * wanted) return 0;
+std::vector<double> missing_where_roots_move(const SolidSurface& first, const SolidSurface& second, double wanted) {
+  std::vector<double> missing(at(first.part_count() * second.part_count()), 0);
+  if (first.box().squared_gap(second.box()) > wanted * wanted) return missing;
   const auto clearances = part_clearances(first, second, wanted + to_be_sure);
-  double missing = 0;
   for (int i = 0; i < first.part_count(); ++i)
-    for (int j = 0; j < second.part_count(); ++j)
-      if (const auto& found = clearances[at(i * second.part_count() + j)]; found && (moves(i) || moves(j)))
-        missing = std::max(missing, wanted - found->mm);
+    for (int j = 0; j < second.part_count(); ++j) {
+      const int z = i * second.part_count() + j;
+      if ((moves(i) || moves(j)) && clearances[at(z)]) missing[at(z)] = std::max(0.0, wanted - clearances[at(z)]->mm);
+    }
   return missing;
 }
 

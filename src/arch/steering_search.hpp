@@ -27,7 +27,7 @@ struct SteeringSearchOptions {
   double shorten_weight = 2;         ///< >= 1: of a mm that a root is shortened
   double largest_turn_degrees = 20;  ///< (0, 60]: tip and torque change by at most this, within `RootSteering`'s range
   double largest_bend_degrees = 30;  ///< (0, 90]: likewise
-  int steps = 40;                    ///< >= 0: at most so many steps of the search
+  int steps = 40;                    ///< >= 0: at most so many steps at a stretch
 };
 
 /// Throws UsageError, with a sentence, for options out of range.
@@ -50,22 +50,23 @@ using ToothPair = std::pair<std::size_t, std::size_t>;  ///< numbers of teeth, l
 
 /// What two teeth lack, zone by zone, where a root can do something about it. Each made with `root_zones`.
 /// @param wanted  mm
-/// @return mm, >= 0: the most that any clearance of zones lacks, of which one at least moves
-double missing_where_roots_move(const SolidSurface& first, const SolidSurface& second, double wanted);
+/// @return mm, >= 0, per pair of zones as in `part_clearances`; 0 where neither moves
+std::vector<double> missing_where_roots_move(const SolidSurface& first, const SolidSurface& second, double wanted);
 
 struct FoundSteering {
-  std::vector<RootSteering> steering;   ///< per tooth; `start`, bit for bit, of one that need not change
-  std::vector<double> cost_mm;          ///< per tooth: root of the sum of the squares of its costs
-  std::map<ToothPair, double> missing;  ///< mm, of pairs that still lack something where roots move
-  std::vector<bool> at_limit;           ///< per tooth: some change is as large as it may be
+  std::vector<RootSteering> steering;                ///< per tooth; `start`, bit for bit, of one that need not change
+  std::vector<double> cost_mm;                       ///< per tooth: root of the sum of the squares of its costs
+  std::map<ToothPair, std::vector<double>> missing;  ///< mm, per pair of zones, of pairs that still lack something
+  std::vector<bool> at_limit;                        ///< per tooth: some change is as large as it may be
 };
 
 /// The least change of roots by which all clearances of roots reach what is wanted, where roots move; what lies at the
 /// necks stays nearly where it is, and may come no nearer than `clearance` or, where it is nearer now, than by 0.1 mm.
 ///
 /// Each step moves the roots by the least change that would do if clearances changed as they do at first (with the
-/// points where parts come nearest), in steps that shorten where this does not hold. Found values are rounded to 0.01
-/// mm and 0.01 degrees. The same on any number of threads.
+/// points where parts come nearest), in steps that shorten where this does not hold. Where that leaves roots in each
+/// other, large turns are tried, and steps taken from the best of them. Found values are rounded to 0.01 mm and 0.01
+/// degrees. The same on any number of threads.
 ///
 /// @param extra  mm, >= 0, per pair: what its roots shall keep more than `clearance`
 /// Throws UsageError for options out of range; what `vertices` throws for `start`, if it is no Error.

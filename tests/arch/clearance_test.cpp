@@ -281,9 +281,7 @@ TEST(NeighbourClearances, OfWhateverStandsNear) {
 TEST(VertexClearances, SignedAndBounded) {
   const TriangleMesh one = sphere(3, 2), two = shifted(sphere(4, 2), {3.5, 0, 0}), far = shifted(one, {40, 0, 0});
   const SolidSurface a = one_part(one), b = one_part(two), c = one_part(far);
-  NeighbourOptions options;
-  options.within = 3;
-  const auto found = vertex_clearances({&a, nullptr, &b, &c}, options);
+  const auto found = vertex_clearances({&a, nullptr, &b, &c}, 3);
   ASSERT_EQ(found[0].size(), one.vertices.size());
   EXPECT_TRUE(found[1].empty());
   int inside = 0;
@@ -295,7 +293,7 @@ TEST(VertexClearances, SignedAndBounded) {
   EXPECT_GT(inside, 0);
   for (const double mm : found[3]) EXPECT_EQ(mm, 3);
   tbb::task_arena alone(1);
-  alone.execute([&] { EXPECT_EQ(vertex_clearances({&a, nullptr, &b, &c}, options), found); });
+  alone.execute([&] { EXPECT_EQ(vertex_clearances({&a, nullptr, &b, &c}, 3), found); });
 }
 
 }  // namespace

@@ -167,8 +167,8 @@ TEST(ResolveCollisions, NecksNearerThanTheClearanceAreSaid) {
   EXPECT_EQ(left.first, 0U);
   EXPECT_EQ(left.second, 1U);
   EXPECT_NE(left.sentence.find("35 and 36"), std::string::npos) << left.sentence;
-  EXPECT_NE(left.cause, CollisionCause::not_found) << left.sentence;
   expect_crowns_unmoved(teeth, found.teeth);
+  for (const double cost : found.cost_mm) EXPECT_LT(cost, 3) << "nothing out of proportion";
   // What can be done is done: lower down they stand apart.
   const auto apart_below = [&](const std::vector<SourcedTooth>& all) {
     const std::size_t apex = all[0].mesh.vertices.size() - 1;
