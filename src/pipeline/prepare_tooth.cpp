@@ -32,7 +32,7 @@ CrownRecord crown_record(const TriangleMesh& input, const TakenCrown& taken) {
   record.kept_triangles = static_cast<int>(taken.kept.mesh.triangles.size());
   record.cap_dropped = taken.record.cap_dropped;
   record.kept_vertices = taken.kept.old_vertices;
-  for (const DroppedVertex& d : taken.kept.dropped) record.dropped_vertices.push_back({d.vertex, d.reason});
+  record.dropped_vertices = taken.kept.dropped;
   record.tooth_confidence = taken.record.tooth_confidence;
   return record;
 }
