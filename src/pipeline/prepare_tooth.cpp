@@ -168,9 +168,11 @@ PreparedTooth prepare_tooth(const TriangleMesh& crown, const CompletionModels& m
     const Workplace place = workplace(crown, options.millimetres_per_unit);
     const TriangleMesh crown_at_work = moved_by(crown, -place.origin);
     std::vector<int> kept_vertices;
-    return PreparedTooth(
-        hinting([&] { return prepare(crown, place, crown_at_work, content_of(models), options, clock, kept_vertices); },
-                [&] { return hint_at_options(crown_at_work, *content_of(models), options, kept_vertices); }));
+    const auto work = [&] {
+      return prepare(crown, place, crown_at_work, content_of(models), options, clock, kept_vertices);
+    };
+    const auto hint = [&] { return hint_at_options(crown_at_work, *content_of(models), options, kept_vertices); };
+    return PreparedTooth(letting_callbacks_throw([&] { return hinting(work, hint); }));
   });
 }
 
