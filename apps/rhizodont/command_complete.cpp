@@ -70,10 +70,10 @@ void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::strin
                likeness->said.fdi, 100 * likeness->said.probability, likeness->said.distance_mm, likeness->next[0].fdi,
                100 * likeness->next[0].probability, likeness->next[1].fdi, 100 * likeness->next[1].probability);
   const auto skirt = std::count_if(r.crown.dropped_vertices.begin(), r.crown.dropped_vertices.end(),
-                                   [](const DroppedCrownVertex& d) { return d.reason == "skirt"; });
+                                   [](const DroppedCrownVertex& d) { return d.reason == DropReason::skirt; });
   if (skirt > 0) fmt::print(out, "  {} vertices dropped as skirt\n", skirt);
   for (const RepairStep& step : r.repairs)
-    fmt::print(out, "  repaired: {} ({} vertices, {} triangles)\n", step.action, step.vertices.size(),
+    fmt::print(out, "  repaired: {} ({} vertices, {} triangles)\n", action_text(step), step.vertices.size(),
                step.triangles.size());
   for (const std::string& warning : all_warnings(r)) fmt::print(out, "  note: {}\n", warning);
 }

@@ -32,8 +32,8 @@ void print_times(const TriangleMesh& crown, const SurfaceNetwork& network, std::
   std::vector<bool> keep;
   const double border = median_seconds([&] { keep = tooth_triangles(crown, confidence); }, repeats);
   const auto take_off = [&] {
-    const KeptCrown rest = keep_crown(crown, keep, "skirt");
-    keep_crown(rest.mesh, triangles_without_spikes(rest.mesh), "spike");
+    const KeptCrown rest = keep_crown(crown, keep, DropReason::skirt);
+    keep_crown(rest.mesh, triangles_without_spikes(rest.mesh), DropReason::spike);
   };
   const double taking = median_seconds(take_off, repeats);
   fmt::print("| {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} |\n", crown.vertices.size(), judging, border, taking,
@@ -72,7 +72,7 @@ void print_agreement(const ToothFamilies& families, const SurfaceNetwork& networ
     const auto on_whole = skirt_confidence(sample.mesh, network, all), on_copy = skirt_confidence(sample.mesh, network);
     std::vector<bool> kept(sample.mesh.vertices.size(), false);
     try {
-      const KeptCrown crown = keep_crown(sample.mesh, tooth_triangles(sample.mesh, on_copy), "skirt");
+      const KeptCrown crown = keep_crown(sample.mesh, tooth_triangles(sample.mesh, on_copy), DropReason::skirt);
       for (const int v : crown.old_vertices) kept[static_cast<std::size_t>(v)] = true;
     } catch (const InputError&) {
     }

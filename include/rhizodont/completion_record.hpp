@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rhizodont/check.hpp"
+#include "rhizodont/dropped_vertex.hpp"
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/repair_step.hpp"
 
@@ -15,12 +16,6 @@
 #include <vector>
 
 namespace rhizodont {
-
-/// A vertex of the input that the tooth does not have, and why.
-struct DroppedCrownVertex {
-  int vertex = 0;      ///< index in the input
-  std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt", "spike", or the action of a repair
-};
 
 /// Where the truth lies with 80 % probability, as found on generated teeth that the network was not trained on.
 struct RootInterval {

@@ -115,7 +115,7 @@ std::vector<Candidate> for_unknown_type(const TriangleMesh& crown, const Atlas& 
   for (Candidate& candidate : candidates) {
     std::vector<bool> keep = candidate.cap.is_cap;
     keep.flip();
-    const TypeGuess guess = guess_fdi_type(prepare_crown(keep_crown(crown, keep, "cap").mesh), atlas);
+    const TypeGuess guess = guess_fdi_type(prepare_crown(keep_crown(crown, keep, DropReason::cap).mesh), atlas);
     candidate.badness *= misfit(guess.frame.residual_mm);
   }
   return candidates;

@@ -19,6 +19,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
 
 namespace rhizodont {
 namespace {
@@ -47,7 +48,7 @@ KeptCrown open_crown(const TriangleMesh& crown, bool closed, const Atlas& atlas,
     if (cap.made) never = cap.is_cap;
     record.cap_dropped = true;
   }
-  return keep_crown(crown, keep, closed ? "cap" : "skirt", never);
+  return keep_crown(crown, keep, closed ? DropReason::cap : DropReason::skirt, never);
 }
 
 /// Lists those of a cap's triangles that are not kept although all their corners, on the border, are.
@@ -56,7 +57,7 @@ void list_dropped_cap(const TriangleMesh& crown, const std::vector<bool>& may_be
   std::vector<bool> is_left(crown.vertices.size(), false), is_kept(crown.triangles.size(), false);
   for (const int v : kept.old_vertices) is_left[static_cast<std::size_t>(v)] = true;
   for (const int t : kept.old_triangles) is_kept[static_cast<std::size_t>(t)] = true;
-  RepairStep step{"cap between vertices of the crown's border dropped", {}, {}};
+  RepairStep step{RepairAction::cap_at_border_dropped, {}, {}};
   for (std::size_t t = 0; t < crown.triangles.size(); ++t) {
     const Triangle& c = crown.triangles[t];
     if (may_be_cap[t] && !is_kept[t] &&
@@ -68,10 +69,10 @@ void list_dropped_cap(const TriangleMesh& crown, const std::vector<bool>& may_be
 
 /// Reduces what is kept further, to what was kept of kept.mesh.
 void reduce_to(KeptCrown& kept, KeptCrown rest) {
-  for (DroppedVertex& d : rest.dropped)
-    kept.dropped.push_back({kept.old_vertices[static_cast<std::size_t>(d.vertex)], std::move(d.reason)});
+  for (const DroppedCrownVertex& d : rest.dropped)
+    kept.dropped.push_back({kept.old_vertices[static_cast<std::size_t>(d.vertex)], d.reason});
   std::sort(kept.dropped.begin(), kept.dropped.end(),
-            [](const DroppedVertex& a, const DroppedVertex& b) { return a.vertex < b.vertex; });
+            [](const DroppedCrownVertex& a, const DroppedCrownVertex& b) { return a.vertex < b.vertex; });
   for (int& v : rest.old_vertices) v = kept.old_vertices[static_cast<std::size_t>(v)];
   for (int& t : rest.old_triangles) t = kept.old_triangles[static_cast<std::size_t>(t)];
   kept.mesh = std::move(rest.mesh);
@@ -80,7 +81,7 @@ void reduce_to(KeptCrown& kept, KeptCrown rest) {
 }
 
 /// Reduces what is kept further, to the triangles of kept.mesh with a true entry in `keep`.
-void keep_only(KeptCrown& kept, const std::vector<bool>& keep, const std::string& reason) {
+void keep_only(KeptCrown& kept, const std::vector<bool>& keep, DropReason reason) {
   reduce_to(kept, keep_crown(kept.mesh, keep, reason));
 }
 
@@ -105,12 +106,12 @@ KeptCrown all_between(const TriangleMesh& crown, const Submesh& part, const Kept
   for (const Triangle& t : crown.triangles)
     keep.push_back(std::all_of(t.begin(), t.end(), [&](int v) { return is_kept[static_cast<std::size_t>(v)]; }));
   for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = keep[t] && !never[t];
-  KeptCrown whole = keep_crown(crown, keep, "ragged border", never);
-  std::vector<std::string> reason(crown.vertices.size());
-  for (const DroppedVertex& d : kept.dropped)
+  KeptCrown whole = keep_crown(crown, keep, DropReason::ragged_border, never);
+  std::vector<std::optional<DropReason>> reason(crown.vertices.size());
+  for (const DroppedCrownVertex& d : kept.dropped)
     reason[static_cast<std::size_t>(part.old_vertices[static_cast<std::size_t>(d.vertex)])] = d.reason;
-  for (DroppedVertex& d : whole.dropped)
-    if (const std::string& earlier = reason[static_cast<std::size_t>(d.vertex)]; !earlier.empty()) d.reason = earlier;
+  for (DroppedCrownVertex& d : whole.dropped)
+    if (const auto earlier = reason[static_cast<std::size_t>(d.vertex)]) d.reason = *earlier;
   return whole;
 }
 
@@ -125,8 +126,8 @@ void drop_skirt(const TriangleMesh& crown, KeptCrown& kept, const SurfaceNetwork
     record.tooth_confidence[static_cast<std::size_t>(kept.old_vertices[v])] = confidence[v];
   SkirtBorderOptions border;
   border.threshold = threshold;
-  keep_only(kept, tooth_triangles(kept.mesh, confidence, border), "skirt");
-  keep_only(kept, triangles_without_spikes(kept.mesh), "spike");
+  keep_only(kept, tooth_triangles(kept.mesh, confidence, border), DropReason::skirt);
+  keep_only(kept, triangles_without_spikes(kept.mesh), DropReason::spike);
 }
 
 /// The crown without its cap, of the size of a tooth before and after: what is left of a plinth is smaller.
@@ -179,10 +180,10 @@ KeptCrown tooth_of_raw_crown(const TriangleMesh& crown, const Tools& tools, cons
   if (part.old_triangles.size() < crown.triangles.size()) kept = all_between(crown, part, kept);
   if (const std::vector<bool> open = triangles_without_slits(kept.mesh);
       std::find(open.begin(), open.end(), false) != open.end())
-    keep_only(kept, open, "ragged border");
+    keep_only(kept, open, DropReason::ragged_border);
   if (is_tooth_surface(kept)) return kept;
-  keep_only(kept, triangles_without_ragged_defects(kept.mesh), "ragged border");
-  keep_only(kept, triangles_without_spikes(kept.mesh), "spike");
+  keep_only(kept, triangles_without_ragged_defects(kept.mesh), DropReason::ragged_border);
+  keep_only(kept, triangles_without_spikes(kept.mesh), DropReason::spike);
   require_tooth_surface(kept);
   return kept;
 }
@@ -203,19 +204,19 @@ KeptCrown usable_part(const TriangleMesh& crown, const Tools& tools, const Compl
 
 /// Puts the input's numbers in the place of the repaired crown's; what the repair dropped is dropped for that reason.
 void number_as_input(KeptCrown& kept, const RepairedMesh& repaired, std::size_t input_vertices) {
-  std::vector<std::string> reason(input_vertices, "unreferenced");
+  std::vector<std::optional<DropReason>> reason(input_vertices, DropReason::unreferenced);
   const auto in_input = [&](int v) { return repaired.old_vertices[static_cast<std::size_t>(v)]; };
   for (const RepairStep& step : repaired.steps)
-    for (const int v : step.vertices) reason[static_cast<std::size_t>(v)] = step.action;
-  for (const DroppedVertex& d : kept.dropped) reason[static_cast<std::size_t>(in_input(d.vertex))] = d.reason;
+    for (const int v : step.vertices) reason[static_cast<std::size_t>(v)] = DropReason::repair;
+  for (const DroppedCrownVertex& d : kept.dropped) reason[static_cast<std::size_t>(in_input(d.vertex))] = d.reason;
   for (int& v : kept.old_vertices) {
     v = in_input(v);
-    reason[static_cast<std::size_t>(v)].clear();
+    reason[static_cast<std::size_t>(v)].reset();
   }
   for (int& t : kept.old_triangles) t = repaired.old_triangles[static_cast<std::size_t>(t)];
   kept.dropped.clear();
   for (std::size_t v = 0; v < reason.size(); ++v)
-    if (!reason[v].empty()) kept.dropped.push_back({static_cast<int>(v), reason[v]});
+    if (reason[v]) kept.dropped.push_back({static_cast<int>(v), *reason[v]});
 }
 
 /// Puts a whole's numbers in the place of a part's in what was noted of the part.
@@ -255,7 +256,7 @@ KeptCrown part_without_cap(const TriangleMesh& closed, const std::vector<bool>& 
   require_tooth_size(closed, options.millimetres_per_unit, true);
   std::vector<bool> keep = is_cap;
   keep.flip();
-  KeptCrown kept = keep_crown(closed, keep, "cap", is_cap);
+  KeptCrown kept = keep_crown(closed, keep, DropReason::cap, is_cap);
   require_tooth_size(kept.mesh, options.millimetres_per_unit);
   KeptCrown rest =
       on_part(kept.old_vertices, kept.old_triangles, [&] { return mended_part(kept.mesh, tools, options, record); });

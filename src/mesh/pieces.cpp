@@ -153,7 +153,7 @@ std::string describe_pieces(const TriangleMesh& mesh, const Pieces& pieces) {
 RepairedMesh drop_specks(const TriangleMesh& mesh, const PieceOptions& options) {
   require_in_range(options);
   std::vector<bool> keep(mesh.triangles.size(), true);
-  RepairStep specks{"speck dropped", {}, {}};
+  RepairStep specks{RepairAction::speck_dropped, {}, {}};
   if (can_be_sorted(mesh)) {
     const Pieces pieces = sort_pieces(mesh, options);
     for (std::size_t t = 0; t < keep.size(); ++t) keep[t] = pieces.kind_of(t) != PieceKind::speck;

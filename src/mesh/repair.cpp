@@ -404,8 +404,6 @@ Ids Workpiece::drop_spikes(const RepairOptions& options) {
   return drop_vertices(spikes);
 }
 
-constexpr const char* seam_action = "merged across a seam";
-
 /// Does the steps one after the other and keeps the book of what they did.
 class Repair {
  public:
@@ -424,26 +422,27 @@ class Repair {
  private:
   bool do_all_steps() {
     bool any = false;
-    const auto step = [&](const char* action, const std::function<Ids()>& work) { any |= note(action, work); };
-    step("vertex merged with another one at the same place", [&] { return piece_.merge_vertices(); });
-    step("inward copy of a triangle dropped (double-sided)", [&] { return piece_.drop_inward_copies(); });
-    step("triangle dropped: without area, or there twice", [&] { return piece_.drop_bad_triangles(); });
-    step(seam_action, [&] { return piece_.merge_seams(options_.seam); });
-    step("triangle cut at vertices on its edge (T-junction)", [&] { return piece_.close_t_junctions(); });
-    step("dropped at an edge with more than two triangles", [&] { return piece_.thin_out_crowded_edges(); });
-    step("speck dropped", [&] { return piece_.drop_pieces(PieceKind::speck); });
-    step("separate piece dropped", [&] { return piece_.drop_pieces(PieceKind::small); });
-    step("triangle turned over", [&] { return piece_.orient(); });
+    using enum RepairAction;
+    const auto step = [&](RepairAction action, const std::function<Ids()>& work) { any |= note(action, work); };
+    step(same_place_merged, [&] { return piece_.merge_vertices(); });
+    step(inward_copy_dropped, [&] { return piece_.drop_inward_copies(); });
+    step(bad_triangle_dropped, [&] { return piece_.drop_bad_triangles(); });
+    step(seam_merged, [&] { return piece_.merge_seams(options_.seam); });
+    step(t_junction_cut, [&] { return piece_.close_t_junctions(); });
+    step(crowded_edge_dropped, [&] { return piece_.thin_out_crowded_edges(); });
+    step(speck_dropped, [&] { return piece_.drop_pieces(PieceKind::speck); });
+    step(piece_dropped, [&] { return piece_.drop_pieces(PieceKind::small); });
+    step(turned_over, [&] { return piece_.orient(); });
     if (options_.connections_only) return any;
-    step("dropped where the surface touches itself", [&] { return piece_.drop_touching_vertices(); });
-    step("spike dropped", [&] { return piece_.drop_spikes(options_); });
+    step(touching_dropped, [&] { return piece_.drop_touching_vertices(); });
+    step(spike_dropped, [&] { return piece_.drop_spikes(options_); });
     // The costly steps wait until the others have nothing left to do.
-    if (!any) step("tunnel cut along its shortest loop", [&] { return piece_.cut_tunnel(); });
-    if (!any) step("dropped where the surface cuts itself", [&] { return piece_.drop_cuts(options_.most_cut_share); });
+    if (!any) step(tunnel_cut, [&] { return piece_.cut_tunnel(); });
+    if (!any) step(cutting_dropped, [&] { return piece_.drop_cuts(options_.most_cut_share); });
     return any;
   }
 
-  bool note(const char* action, const std::function<Ids()>& work) {
+  bool note(RepairAction action, const std::function<Ids()>& work) {
     const std::vector<bool> before = used_vertices(piece_.mesh());
     Ids triangles = work();
     const std::vector<bool> after = used_vertices(piece_.mesh());
@@ -466,9 +465,9 @@ class Repair {
     for (const int v : kept_vertices) is_left[static_cast<std::size_t>(place[static_cast<std::size_t>(v)])] = true;
     for (RepairStep& step : steps_) {
       std::sort(step.vertices.begin(), step.vertices.end());
-      if (step.action == seam_action) {
+      if (step.action == RepairAction::seam_merged) {
         for (const int v : step.vertices) step.merged_into.push_back(piece_.stand_in(v));
-        step.action += fmt::format(", the farthest {} apart", seam_width_in_words(piece_.widest_seam_mm()));
+        step.widest_seam_mm = piece_.widest_seam_mm();
       }
       std::sort(step.triangles.begin(), step.triangles.end());
       step.triangles.erase(std::unique(step.triangles.begin(), step.triangles.end()), step.triangles.end());

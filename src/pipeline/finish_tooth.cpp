@@ -164,11 +164,11 @@ CompletedTooth finish_tooth(const PreparedTooth& prepared, const RootSteering& s
   tooth.record = content.record;
   return with_threads(content.options.threads, [&] {
     StageClock clock(progress);
-    hinting([&] { finish(content, clock, tooth); },
-            [&] {
-              return hint_at_options(moved_by(content.input, -content.place.origin), *content.models, content.options,
-                                     content.old_vertices);
-            });
+    const auto hint = [&] {
+      return hint_at_options(moved_by(content.input, -content.place.origin), *content.models, content.options,
+                             content.old_vertices);
+    };
+    letting_callbacks_throw([&] { hinting([&] { finish(content, clock, tooth); }, hint); });
     const std::vector<StageRecord> stages = clock.finish();
     tooth.record.stages.insert(tooth.record.stages.end(), stages.begin(), stages.end());
     return std::move(tooth);

@@ -32,7 +32,7 @@ CrownRecord crown_record(const TriangleMesh& input, const TakenCrown& taken) {
   record.kept_triangles = static_cast<int>(taken.kept.mesh.triangles.size());
   record.cap_dropped = taken.record.cap_dropped;
   record.kept_vertices = taken.kept.old_vertices;
-  for (const DroppedVertex& d : taken.kept.dropped) record.dropped_vertices.push_back({d.vertex, d.reason});
+  record.dropped_vertices = taken.kept.dropped;
   record.tooth_confidence = taken.record.tooth_confidence;
   return record;
 }
@@ -176,9 +176,11 @@ PreparedTooth prepare_tooth(const TriangleMesh& crown, const CompletionModels& m
     const Workplace place = workplace(crown, options.millimetres_per_unit);
     const TriangleMesh crown_at_work = moved_by(crown, -place.origin);
     std::vector<int> kept_vertices;
-    return PreparedTooth(
-        hinting([&] { return prepare(crown, place, crown_at_work, content_of(models), options, clock, kept_vertices); },
-                [&] { return hint_at_options(crown_at_work, *content_of(models), options, kept_vertices); }));
+    const auto work = [&] {
+      return prepare(crown, place, crown_at_work, content_of(models), options, clock, kept_vertices);
+    };
+    const auto hint = [&] { return hint_at_options(crown_at_work, *content_of(models), options, kept_vertices); };
+    return PreparedTooth(letting_callbacks_throw([&] { return hinting(work, hint); }));
   });
 }
 

@@ -20,7 +20,13 @@ double peak_memory_mb() {
 
 void StageClock::begin(const std::string& name) {
   end_stage();
-  if (progress_) progress_(name);
+  if (progress_) {
+    try {
+      progress_(name);
+    } catch (...) {
+      throw ThrownByCallback{std::current_exception()};
+    }
+  }
   const auto same =
       std::find_if(records_.begin(), records_.end(), [&](const StageRecord& record) { return record.name == name; });
   current_ = static_cast<std::size_t>(same - records_.begin());

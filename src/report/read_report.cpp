@@ -42,11 +42,12 @@ ExcusedByReport excused(const nlohmann::json& report, const std::vector<int>& fi
   std::set<std::string> repairs;
   const VerticesOfFile vertices(file_vertices);
   for (const auto& json : report.at("repairs")) {
-    RepairStep step{json.at("action"), ids_of(json, "vertices", vertices), json.at("triangles"), {}};
+    const std::string action = json.at("action");
+    RepairStep step{action_of_text(action), ids_of(json, "vertices", vertices), json.at("triangles")};
     if (json.contains("merged_into")) step.merged_into = ids_of(json, "merged_into", vertices);
     if (!step.merged_into.empty() && step.merged_into.size() != step.vertices.size())
       throw std::out_of_range("merged_into");
-    repairs.insert(step.action);
+    repairs.insert(action);
     result.repairs.push_back(std::move(step));
   }
   for (const auto& [reason, ids] : report.at("crown").at("dropped_vertices_by_reason").items())

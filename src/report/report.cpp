@@ -28,8 +28,14 @@ Json rows(const Eigen::Matrix3d& m) {
 }
 
 Json crown_json(const CompletionRecord& record) {
+  std::map<int, std::string> repaired;
+  for (const RepairStep& step : record.repairs)
+    for (const int v : step.vertices) repaired.emplace(v, action_text(step));
   std::map<std::string, std::vector<int>> by_reason;
-  for (const DroppedCrownVertex& d : record.crown.dropped_vertices) by_reason[d.reason].push_back(d.vertex);
+  for (const DroppedCrownVertex& d : record.crown.dropped_vertices) {
+    const auto repair = d.reason == DropReason::repair ? repaired.find(d.vertex) : repaired.end();
+    by_reason[repair == repaired.end() ? std::string(reason_text(d.reason)) : repair->second].push_back(d.vertex);
+  }
   Json dropped = Json::object();
   for (const auto& [reason, vertices] : by_reason) dropped[reason] = vertices;
   return {{"triangles", record.crown.triangles},
@@ -42,7 +48,7 @@ Json crown_json(const CompletionRecord& record) {
 Json repairs_json(const std::vector<RepairStep>& repairs) {
   Json json = Json::array();
   for (const RepairStep& step : repairs) {
-    json.push_back({{"action", step.action}, {"vertices", step.vertices}, {"triangles", step.triangles}});
+    json.push_back({{"action", action_text(step)}, {"vertices", step.vertices}, {"triangles", step.triangles}});
     if (!step.merged_into.empty()) json.back()["merged_into"] = step.merged_into;
   }
   return json;

@@ -11,6 +11,7 @@
 #include "rhizodont/error.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace rhizodont {
 namespace {
@@ -71,7 +72,13 @@ bool give_up_pinches(const TriangleMesh& crown, const std::vector<bool>& mask, s
 
 }  // namespace
 
-KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, const std::string& reason,
+std::string_view reason_text(DropReason reason) {
+  constexpr std::array<std::string_view, 7> texts{"unreferenced",   "cap",   "skirt", "spike", "ragged border",
+                                                  "pinched border", "repair"};
+  return texts[static_cast<std::size_t>(reason)];
+}
+
+KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, DropReason reason,
                      const std::vector<bool>& never) {
   std::vector<Use> use(crown.vertices.size(), Use::unreferenced);
   for (std::size_t t = 0; t < keep.size(); ++t)
@@ -87,9 +94,9 @@ KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, c
   KeptCrown kept;
   for (std::size_t v = 0; v < use.size(); ++v) {
     const int id = static_cast<int>(v);
-    if (use[v] == Use::unreferenced) kept.dropped.push_back({id, "unreferenced"});
+    if (use[v] == Use::unreferenced) kept.dropped.push_back({id, DropReason::unreferenced});
     if (use[v] == Use::masked) kept.dropped.push_back({id, reason});
-    if (use[v] == Use::pinched) kept.dropped.push_back({id, "pinched border"});
+    if (use[v] == Use::pinched) kept.dropped.push_back({id, DropReason::pinched_border});
   }
   Submesh part = submesh(crown, mask);
   kept.mesh = std::move(part.mesh);

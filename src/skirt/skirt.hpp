@@ -2,25 +2,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/dropped_vertex.hpp"
 #include "rhizodont/mesh.hpp"
 
-#include <string>
 #include <vector>
 
 namespace rhizodont {
 
-/// A vertex of the input that the tooth will not have.
-struct DroppedVertex {
-  int vertex = 0;      ///< index in the input
-  std::string reason;  ///< "cap", "unreferenced", "pinched border", "skirt", "spike"
-};
-
 /// What is left of a crown, with where each element stood before. Order is kept.
 struct KeptCrown {
   TriangleMesh mesh;
-  std::vector<int> old_vertices;       ///< index in the input per kept vertex, ascending
-  std::vector<int> old_triangles;      ///< likewise for triangles
-  std::vector<DroppedVertex> dropped;  ///< ascending by vertex
+  std::vector<int> old_vertices;            ///< index in the input per kept vertex, ascending
+  std::vector<int> old_triangles;           ///< likewise for triangles
+  std::vector<DroppedCrownVertex> dropped;  ///< ascending by vertex
 };
 
 /// Reduces a crown to the vertices of the triangles with a true entry in `keep`, with every triangle between them; then
@@ -28,7 +22,7 @@ struct KeptCrown {
 /// hangs on the rest by them only, go. `reason` is noted for the vertices outside of `keep`.
 /// `never`: triangles that are not kept even where all their vertices are; one entry per triangle, or empty for none.
 /// Throws InputError if nothing is left.
-KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, const std::string& reason,
+KeptCrown keep_crown(const TriangleMesh& crown, const std::vector<bool>& keep, DropReason reason,
                      const std::vector<bool>& never = {});
 
 }  // namespace rhizodont

@@ -96,12 +96,12 @@ TEST(TakeCrown, NumbersAreTheInputsAlsoBehindWhatIsDropped) {
   const TakenCrown taken = taken_of(crown);
   EXPECT_EQ(taken.kept.old_triangles, counted_from(1, dome().triangles.size()));
   ASSERT_EQ(taken.record.repairs.size(), 1U);
-  EXPECT_EQ(taken.record.repairs[0].action, "speck dropped");
+  EXPECT_EQ(taken.record.repairs[0].action, RepairAction::speck_dropped);
   EXPECT_EQ(taken.record.repairs[0].vertices, (std::vector<int>{0, 1, 2, last, last + 1}));
-  std::map<int, std::string> dropped;
-  for (const DroppedVertex& d : taken.kept.dropped) dropped[d.vertex] = d.reason;
-  EXPECT_EQ(dropped[3], "unreferenced");
-  for (const int v : {0, 1, 2, last, last + 1}) EXPECT_EQ(dropped[v], "speck dropped") << v;
+  std::map<int, DropReason> dropped;
+  for (const DroppedCrownVertex& d : taken.kept.dropped) dropped[d.vertex] = d.reason;
+  EXPECT_EQ(dropped[3], DropReason::unreferenced);
+  for (const int v : {0, 1, 2, last, last + 1}) EXPECT_EQ(dropped[v], DropReason::repair) << v;
   EXPECT_EQ(dropped.size(), 6U);
   EXPECT_EQ(taken.kept.old_vertices, counted_from(4, dome().vertices.size()));
 }
@@ -136,7 +136,7 @@ TEST(TakeCrown, AMadeCapIsTakenOffToTheTriangle) {
       for (std::size_t t = 0; t < closed.is_cap.size(); ++t)
         if (!closed.is_cap[t]) crown.push_back(static_cast<int>(t));
       EXPECT_EQ(taken.kept.old_triangles, crown);
-      for (const DroppedVertex& d : taken.kept.dropped) EXPECT_EQ(d.reason, "cap");
+      for (const DroppedCrownVertex& d : taken.kept.dropped) EXPECT_EQ(d.reason, DropReason::cap);
       EXPECT_EQ(taken.kept.old_vertices.size() + taken.kept.dropped.size(), closed.mesh.vertices.size());
     }
 }

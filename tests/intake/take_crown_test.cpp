@@ -77,7 +77,7 @@ TEST(MadeCap, IsKnownOnceTheTrianglesHangTogether) {
   EXPECT_EQ(tooth.record.repairs.back().triangles, whole.record.repairs.front().triangles);
   std::size_t turned = 0;
   for (const RepairStep& step : tooth.record.repairs)
-    if (step.action == "triangle turned over") turned += step.triangles.size();
+    if (step.action == RepairAction::turned_over) turned += step.triangles.size();
   EXPECT_EQ(turned, 300U);
   CheckOptions exact = allowing_for(tooth.record.repairs);
   exact.compare_as_float = false;

@@ -14,6 +14,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
+#include <string>
 
 namespace rhizodont {
 namespace {
@@ -25,7 +27,7 @@ std::int32_t last_vertex(const TriangleMesh& mesh) { return static_cast<std::int
 /// The step with this word in its action; fails the test if there is none.
 RepairStep step(const RepairedMesh& repaired, const std::string& word) {
   for (const RepairStep& s : repaired.steps)
-    if (s.action.find(word) != std::string::npos) return s;
+    if (action_text(s).find(word) != std::string::npos) return s;
   ADD_FAILURE() << "no step says " << word;
   return {};
 }
@@ -250,6 +252,18 @@ TEST(Repair, BadInput) {
   mesh = {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
   EXPECT_THROW(repair(mesh), InputError) << "nothing left";
   EXPECT_THROW(repair({}), InputError);
+}
+
+TEST(Repair, EveryActionsTextIsReadBack) {
+  std::set<std::string> texts;
+  for (int a = 0; a <= static_cast<int>(RepairAction::cap_at_border_dropped); ++a) {
+    RepairStep done;
+    done.action = static_cast<RepairAction>(a);
+    texts.insert(action_text(done));
+    EXPECT_EQ(action_of_text(action_text(done)), done.action) << action_text(done);
+  }
+  EXPECT_EQ(texts.size(), 15U);
+  EXPECT_EQ(action_of_text("of a later version"), RepairAction::other);
 }
 
 }  // namespace

@@ -275,6 +275,37 @@ TEST(CompleteTooth, AnExceptionFromTheProgressCallbackCancelsItAtEveryStage) {
   EXPECT_EQ(complete_tooth(crown, models(), options).mesh.vertices, whole.mesh.vertices);
 }
 
+TEST(CompleteTooth, AnErrorFromTheProgressCallbackIsNotTakenForTheWorksOwn) {
+  const TriangleMesh crown = sample("crown_34.ply");
+  CompleteOptions options = for_tooth(34);
+  options.e = 2;
+  // More vertices and triangles than the crown has: numbers that a part of it would translate or leave out.
+  const std::vector<std::int64_t> ids{3, 1'000'000};
+  for (const char* at : {"crown", "orientation", "joining", "check"}) {
+    SCOPED_TRACE(at);
+    const auto refuse = [&](std::string_view stage) {
+      if (stage == at) throw InputError("Refused by the caller.", ids, ElementKind::vertices);
+    };
+    const auto give_up = [&](std::string_view stage) {
+      if (stage == at) throw NoResultError("Given up by the caller.", ids, ElementKind::triangles);
+    };
+    try {
+      complete_tooth(crown, models(), options, refuse);
+      ADD_FAILURE() << "not cancelled";
+    } catch (const InputError& error) {
+      EXPECT_STREQ(error.what(), "Refused by the caller.");
+      EXPECT_EQ(error.elements(), ids);
+    }
+    try {
+      complete_tooth(crown, models(), options, give_up);
+      ADD_FAILURE() << "not cancelled";
+    } catch (const NoResultError& error) {
+      EXPECT_STREQ(error.what(), "Given up by the caller.");
+      EXPECT_EQ(error.elements(), ids);
+    }
+  }
+}
+
 TEST(CompleteTooth, ARealCappedCrownIsOpenedAndCompleted) {
   const auto file = shared_data / "crowns/patient0/crown_16.ply";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "no real crowns at " << file;

@@ -81,8 +81,8 @@ TEST(Report, OfARefusedCrownSaysWhyAndWhere) {
 
 TEST(Report, WhatItExcusesIsReadBackInTheMeshsNumbers) {
   CompletedTooth tooth;
-  tooth.record.crown.dropped_vertices = {{1, "cap"}, {2, "merged"}, {3, "skirt"}};
-  tooth.record.repairs = {{"merged", {2}, {}, {0}}, {"turned over", {}, {7, 8}}};
+  tooth.record.crown.dropped_vertices = {{1, DropReason::cap}, {2, DropReason::repair}, {3, DropReason::skirt}};
+  tooth.record.repairs = {{RepairAction::seam_merged, {2}, {}, {0}, 0.002}, {RepairAction::turned_over, {}, {7, 8}}};
   EXPECT_EQ(vertices_not_of_tooth(tooth.record), (std::vector<int>{1, 3}));
   ReportedInput input;
   input.sha256 = std::string(64, 'a');
@@ -91,10 +91,15 @@ TEST(Report, WhatItExcusesIsReadBackInTheMeshsNumbers) {
   crown.file_vertices = {0, 4, 5, 9};
   refer_to_file(tooth.record, crown, "tooth.ply");
   const test::TemporaryFolder folder;
-  const auto file = folder.write("report.json", completion_report(tooth, input));
+  const std::string written = completion_report(tooth, input);
+  EXPECT_EQ(json::parse(written)["crown"]["dropped_vertices_by_reason"],
+            json({{"cap", {4}}, {"merged across a seam, the farthest 0.002 mm apart", {5}}, {"skirt", {9}}}));
+  const auto file = folder.write("report.json", written);
   const ExcusedByReport excused = excused_by_report(file, input.sha256, crown.file_vertices);
   EXPECT_EQ(excused.dropped_vertices, (std::vector<int>{1, 3}));
   ASSERT_EQ(excused.repairs.size(), 2U);
+  EXPECT_EQ(excused.repairs[0].action, RepairAction::seam_merged);
+  EXPECT_EQ(excused.repairs[1].action, RepairAction::turned_over);
   EXPECT_EQ(excused.repairs[0].vertices, std::vector<int>{2});
   EXPECT_EQ(excused.repairs[0].merged_into, std::vector<int>{0});
   EXPECT_EQ(excused.repairs[1].triangles, (std::vector<int>{7, 8}));

@@ -23,8 +23,8 @@ CompletedTooth small_tooth() {
   tooth.uncertainty = {0, 0, 0.1, 0.2};
   CompletionRecord& record = tooth.record;
   record.crown.kept_vertices = {0, 2};
-  record.crown.dropped_vertices = {{1, "cap"}, {3, "skirt"}};
-  record.repairs = {{"merged", {1}, {5}, {3}}};
+  record.crown.dropped_vertices = {{1, DropReason::cap}, {3, DropReason::skirt}};
+  record.repairs = {{RepairAction::seam_merged, {1}, {5}, {3}}};
   record.promises.crown.dropped_vertices = {1, 3};
   record.warnings = {"first"};
   record.missed_places = {{"A sharp angle.", {1, 2}}};

@@ -40,7 +40,7 @@ TEST(SkirtBorder, LiesWhereConfidenceTurns) {
   const Sheet sheet;
   const std::vector<bool> keep = tooth_triangles(sheet.mesh, sheet.confidence);
   EXPECT_NEAR(sheet.kept_area(keep), 16, 1);
-  const KeptCrown kept = keep_crown(sheet.mesh, keep, "skirt");
+  const KeptCrown kept = keep_crown(sheet.mesh, keep, DropReason::skirt);
   const Diagnosis diagnosis = diagnose(kept.mesh);
   EXPECT_TRUE(diagnosis.is_oriented_manifold());
   EXPECT_EQ(diagnosis.border_loop_count, 1);
@@ -88,7 +88,7 @@ TEST(SkirtBorder, IsSmoothWhereConfidenceIsRagged) {
     const bool tooth = p.x() < 4 + (static_cast<int>(std::round(p.y() / 0.2)) % 2 == 0 ? 0.25 : -0.25);
     sheet.confidence[v] = tooth ? 0.7F : 0.3F;
   }
-  const KeptCrown kept = keep_crown(sheet.mesh, tooth_triangles(sheet.mesh, sheet.confidence), "skirt");
+  const KeptCrown kept = keep_crown(sheet.mesh, tooth_triangles(sheet.mesh, sheet.confidence), DropReason::skirt);
   double length = 0;
   for (const auto& loop : border_loops(kept.mesh))
     for (std::size_t i = 0; i < loop.size(); ++i)
@@ -131,7 +131,7 @@ TEST(SkirtBorder, TakesABridgeOff) {
   const Submesh part = compact(sheet.mesh);
   for (const Point& p : part.mesh.vertices) sheet.confidence.push_back(p.x() < 4 ? 0.95F : 0.1F);
   ASSERT_EQ(diagnose(part.mesh).border_loop_count, 2);
-  const KeptCrown kept = keep_crown(part.mesh, tooth_triangles(part.mesh, sheet.confidence), "skirt");
+  const KeptCrown kept = keep_crown(part.mesh, tooth_triangles(part.mesh, sheet.confidence), DropReason::skirt);
   EXPECT_EQ(diagnose(kept.mesh).border_loop_count, 1);
 }
 
@@ -145,7 +145,7 @@ TEST(SkirtBorder, AHoleInTheToothStays) {
   const Submesh part = compact(sheet.mesh);
   std::vector<float> confidence;
   for (const Point& p : part.mesh.vertices) confidence.push_back(p.x() < 4 ? 0.95F : 0.05F);
-  const KeptCrown kept = keep_crown(part.mesh, tooth_triangles(part.mesh, confidence), "skirt");
+  const KeptCrown kept = keep_crown(part.mesh, tooth_triangles(part.mesh, confidence), DropReason::skirt);
   EXPECT_EQ(diagnose(kept.mesh).border_loop_count, 2);
 }
 

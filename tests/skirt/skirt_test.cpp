@@ -15,9 +15,9 @@
 namespace rhizodont {
 namespace {
 
-std::set<int> dropped_for(const KeptCrown& kept, const std::string& reason) {
+std::set<int> dropped_for(const KeptCrown& kept, DropReason reason) {
   std::set<int> vertices;
-  for (const DroppedVertex& d : kept.dropped)
+  for (const DroppedCrownVertex& d : kept.dropped)
     if (d.reason == reason) vertices.insert(d.vertex);
   return vertices;
 }
@@ -37,10 +37,10 @@ void expect_whole(const TriangleMesh& input, const KeptCrown& kept) {
 TEST(Skirt, KeepsAGoodCrownWhole) {
   TriangleMesh mesh = test::grid(4);
   mesh.vertices.emplace_back(9, 9, 9);
-  const KeptCrown kept = keep_crown(mesh, std::vector<bool>(mesh.triangles.size(), true), "cap");
+  const KeptCrown kept = keep_crown(mesh, std::vector<bool>(mesh.triangles.size(), true), DropReason::cap);
   expect_whole(mesh, kept);
   EXPECT_EQ(kept.mesh.triangles, mesh.triangles);
-  EXPECT_EQ(dropped_for(kept, "unreferenced"), (std::set<int>{25}));
+  EXPECT_EQ(dropped_for(kept, DropReason::unreferenced), (std::set<int>{25}));
   EXPECT_EQ(kept.dropped.size(), 1U);
 }
 
@@ -48,7 +48,7 @@ TEST(Skirt, ATriangleBetweenKeptVerticesComesBack) {
   const TriangleMesh mesh = test::grid(4);
   std::vector<bool> keep(mesh.triangles.size(), true);
   keep[10] = false;  // all its vertices are in neighbours that stay
-  const KeptCrown kept = keep_crown(mesh, keep, "cap");
+  const KeptCrown kept = keep_crown(mesh, keep, DropReason::cap);
   expect_whole(mesh, kept);
   EXPECT_EQ(kept.mesh.triangles.size(), mesh.triangles.size());
 }
@@ -59,11 +59,12 @@ TEST(Skirt, TwoPartsHangingTogetherByAVertexLoseTheSmallerOne) {
   for (Triangle& t : mesh.triangles)
     for (std::int32_t& v : t)
       if (v == 25) v = 24;
-  const KeptCrown kept = keep_crown(mesh, std::vector<bool>(mesh.triangles.size(), true), "cap");
+  const KeptCrown kept = keep_crown(mesh, std::vector<bool>(mesh.triangles.size(), true), DropReason::cap);
   expect_whole(mesh, kept);
   EXPECT_EQ(kept.mesh.triangles.size(), test::grid(4).triangles.size());
-  EXPECT_EQ(dropped_for(kept, "pinched border").size(), 8U);
-  EXPECT_FALSE(dropped_for(kept, "pinched border").contains(24)) << "without the smaller part the vertex is sound";
+  EXPECT_EQ(dropped_for(kept, DropReason::pinched_border).size(), 8U);
+  EXPECT_FALSE(dropped_for(kept, DropReason::pinched_border).contains(24))
+      << "without the smaller part the vertex is sound";
 }
 
 TEST(Skirt, AVertexThatTheBorderPassesTwiceGoes) {
@@ -76,9 +77,9 @@ TEST(Skirt, AVertexThatTheBorderPassesTwiceGoes) {
     };
     return in({6, 7, 11, 12}) || in({12, 13, 17, 18});
   });
-  const KeptCrown kept = keep_crown(open, std::vector<bool>(open.triangles.size(), true), "cap");
+  const KeptCrown kept = keep_crown(open, std::vector<bool>(open.triangles.size(), true), DropReason::cap);
   expect_whole(open, kept);
-  EXPECT_TRUE(dropped_for(kept, "pinched border").contains(12));
+  EXPECT_TRUE(dropped_for(kept, DropReason::pinched_border).contains(12));
 }
 
 TEST(Skirt, MaskedVerticesAreNamedWithTheReason) {
@@ -87,14 +88,14 @@ TEST(Skirt, MaskedVerticesAreNamedWithTheReason) {
   for (const Triangle& t : mesh.triangles)
     keep.push_back(
         std::all_of(t.begin(), t.end(), [&](int v) { return mesh.vertices[static_cast<std::size_t>(v)].y() >= 1; }));
-  const KeptCrown kept = keep_crown(mesh, keep, "cap");
+  const KeptCrown kept = keep_crown(mesh, keep, DropReason::cap);
   expect_whole(mesh, kept);
-  EXPECT_EQ(dropped_for(kept, "cap"), (std::set<int>{0, 1, 2, 3}));
+  EXPECT_EQ(dropped_for(kept, DropReason::cap), (std::set<int>{0, 1, 2, 3}));
 }
 
 TEST(Skirt, NothingLeftIsAnError) {
   const TriangleMesh mesh = test::grid(2);
-  EXPECT_THROW(keep_crown(mesh, std::vector<bool>(mesh.triangles.size(), false), "cap"), InputError);
+  EXPECT_THROW(keep_crown(mesh, std::vector<bool>(mesh.triangles.size(), false), DropReason::cap), InputError);
 }
 
 }  // namespace
