@@ -39,7 +39,9 @@ struct ToothOfArch {
   int fdi = 0;
   TriangleMesh crown;                   ///< as cut from the scan
   std::vector<int> scan_vertices;       ///< of the scan, for each vertex of `crown`
-  std::optional<CompletedTooth> tooth;  ///< its record refers to `crown`; not there if it was refused
+  /// Its record refers to `crown`; not there if it was refused. What closes the crown where the scan hides it at its
+  /// neighbours is transition.
+  std::optional<CompletedTooth> tooth;
   /// mm, per vertex of the tooth: signed distance from the nearest other tooth, at most 10; negative inside of one
   std::vector<double> clearance;
   std::string refusal;  ///< why there is no tooth; empty if there is one
@@ -61,12 +63,13 @@ struct LongAxes {
 /// third of the root, so that several roots count together.
 LongAxes long_axes(const CompletedTooth& tooth);
 
-/// How near two teeth come, mm: exact distances of their triangles, negative (minus a depth) where they run into each
-/// other. A part that is missing has none.
+/// How near two teeth come, crown and root each for itself; the crown ends at the middle of its border, what closes it
+/// above that, where the scan hides it at its neighbours, is the crown's. In mm: exact distances of their triangles,
+/// negative (minus a depth) where they run into each other. A part that is missing has none.
 struct ToothClearance {
-  int first = 0, second = 0;                     ///< FDI numbers
-  std::optional<double> crown_crown;             ///< as scanned
-  std::optional<double> root_root;               ///< transition and predicted parts
+  int first = 0, second = 0;  ///< FDI numbers
+  std::optional<double> crown_crown;
+  std::optional<double> root_root;
   std::optional<double> root_crown, crown_root;  ///< the first's root and the second's crown, and the other way
 };
 

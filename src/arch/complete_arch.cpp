@@ -4,6 +4,7 @@
 // "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", figure 1 and section 4.1: from a
 // segmented scan to whole teeth. What a person's lengths say of each other: person_lengths.cpp.
 #include "arch/clearance.hpp"
+#include "arch/neck.hpp"
 #include "arch/person_lengths.hpp"
 #include "arch/resolve_collisions.hpp"
 #include "mesh/adjacency.hpp"
@@ -93,6 +94,33 @@ std::map<int, ToothDirections> directions_of(const std::vector<ToothOfArch>& tee
   return directions;
 }
 
+/// Where a scan hides a crown at its neighbours, its border climbs, and what closes it there is new: vertices above the
+/// middle of the border, along the growth axis.
+std::vector<bool> closes_contact(const CompletedTooth& tooth) {
+  const Eigen::Vector3d& up = tooth.record.frame.growth_axis;
+  const double level = up.dot(middle_of_border(tooth));
+  std::vector<bool> closes;
+  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v)
+    closes.push_back(tooth.source[v] != VertexSource::scan && up.dot(tooth.mesh.vertices[v]) > level);
+  return closes;
+}
+
+/// What closes a crown at its neighbours is transition, as no scanner saw it and it is no root either.
+void mark_contacts(CompletedTooth& tooth) {
+  const std::vector<bool> closes = closes_contact(tooth);
+  for (std::size_t v = 0; v < closes.size(); ++v)
+    if (closes[v]) tooth.source[v] = VertexSource::transition;
+}
+
+/// The parts that clearances are told by: the crown with what closes it at its neighbours, and the root.
+std::vector<VertexSource> crown_and_root(const CompletedTooth& tooth) {
+  std::vector<VertexSource> parts = tooth.source;
+  const std::vector<bool> closes = closes_contact(tooth);
+  for (std::size_t v = 0; v < parts.size(); ++v)
+    if (closes[v]) parts[v] = VertexSource::scan;
+  return parts;
+}
+
 /// Counts teeth and tells of them, one thread at a time.
 class Count {
  public:
@@ -155,6 +183,7 @@ void complete_one(ToothOfArch& tooth, const std::vector<Attempt>& attempts, cons
     try {
       prepared = prepare_tooth(tooth.crown, models, attempt.options);
       tooth.tooth = finish_tooth(*prepared, attempt.options.steering, attempt.options.transition);
+      mark_contacts(*tooth.tooth);
       if (!attempt.warning.empty()) tooth.tooth->record.warnings.push_back(attempt.warning);
       return;
     } catch (const Error&) {
@@ -221,6 +250,7 @@ void heed_measured(std::vector<ToothOfArch>& teeth, const Prepared& prepared, co
       steering.length_mm = std::clamp(length.mm, shortest_root_mm, longest_root_mm);
       const std::optional<RootInterval> alone = tooth.tooth->record.root.interval;
       tooth.tooth = finish_tooth(*prepared[i], steering, options.tooth.transition);
+      mark_contacts(*tooth.tooth);
       if (!alone || measured.contains(tooth.fdi)) return;
       const double half = half_of_80_percent * length.deviation_mm, mm = tooth.tooth->record.root.length_mm;
       tooth.tooth->record.root.interval = {std::max(mm - half, shortest_root_mm), std::min(mm + half, longest_root_mm),
@@ -244,7 +274,7 @@ void measure_clearances(CompletedArch& arch) {
   std::vector<const SolidSurface*> teeth(arch.teeth.size(), nullptr);
   tbb::parallel_for(std::size_t{0}, arch.teeth.size(), [&](std::size_t i) {
     const std::optional<CompletedTooth>& tooth = arch.teeth[i].tooth;
-    if (tooth) teeth[i] = &surfaces[i].emplace(tooth_surface(in_millimetres(*tooth), tooth->source));
+    if (tooth) teeth[i] = &surfaces[i].emplace(tooth_surface(in_millimetres(*tooth), crown_and_root(*tooth)));
   });
   for (const NeighbourClearance& pair : neighbour_clearances(teeth))
     arch.clearances.push_back({arch.teeth[pair.first].fdi, arch.teeth[pair.second].fdi,
@@ -265,14 +295,15 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
     numbers.push_back(i);
     roots.push_back(steerable_root(*tooth.tooth, tooth.tooth->options.steering));
     if (options.root_lengths.contains(tooth.fdi)) roots.back().shortest_mm = roots.back().length_mm;
-    teeth.push_back({in_millimetres(*tooth.tooth), tooth.tooth->source});
+    teeth.push_back({in_millimetres(*tooth.tooth), crown_and_root(*tooth.tooth)});
   }
   std::map<std::size_t, CompletedTooth> made;
   const auto finish = [&](std::size_t number, const RootSteering& steering) {
     const std::size_t i = numbers[number];
     CompletedTooth tooth = finish_tooth(prepared[i].value(), steering, options.tooth.transition);
     tooth.record.root.interval = arch.teeth[i].tooth->record.root.interval;
-    SourcedTooth sourced{in_millimetres(tooth), tooth.source};
+    mark_contacts(tooth);
+    SourcedTooth sourced{in_millimetres(tooth), crown_and_root(tooth)};
     made.insert_or_assign(number, std::move(tooth));
     return sourced;
   };

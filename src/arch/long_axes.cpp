@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // Axes of crown and root through their middles: Tong et al., Am J Orthod Dentofacial Orthop 2012;141:604.
+#include "arch/neck.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/arch.hpp"
 
@@ -9,38 +10,12 @@
 #include <limits>
 
 namespace rhizodont {
-namespace {
-
-bool is_scan(const CompletedTooth& tooth, int v) {
-  return tooth.source[static_cast<std::size_t>(v)] == VertexSource::scan;
-}
-
-/// Length-weighted middle of the edges between scanned triangles and new ones.
-Point middle_of_border(const CompletedTooth& tooth) {
-  Point sum = Point::Zero();
-  double length = 0;
-  for (const Triangle& t : tooth.mesh.triangles) {
-    if (std::all_of(t.begin(), t.end(), [&](int v) { return is_scan(tooth, v); })) continue;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const int a = t[i], b = t[(i + 1) % 3];
-      if (!is_scan(tooth, a) || !is_scan(tooth, b)) continue;
-      const Point &pa = tooth.mesh.vertices[static_cast<std::size_t>(a)],
-                  &pb = tooth.mesh.vertices[static_cast<std::size_t>(b)];
-      sum += 0.5 * (pa - pb).norm() * (pa + pb);
-      length += (pa - pb).norm();
-    }
-  }
-  return length > 0 ? Point(sum / length) : area_centroid(tooth.mesh);
-}
-
-}  // namespace
-
 LongAxes long_axes(const CompletedTooth& tooth) {
   const Eigen::Vector3d& up = tooth.record.frame.growth_axis;
   const auto [lowest, highest] = extent_along(tooth.mesh.vertices, up);
   double neck = std::numeric_limits<double>::max();
   for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v)
-    if (is_scan(tooth, static_cast<int>(v))) neck = std::min(neck, up.dot(tooth.mesh.vertices[v]));
+    if (tooth.source[v] == VertexSource::scan) neck = std::min(neck, up.dot(tooth.mesh.vertices[v]));
   const Point middle = middle_of_border(tooth);
   const double third = lowest + (neck - lowest) / 3;
   Point sum = Point::Zero();

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "rhizodont/complete.hpp"
+
+namespace rhizodont {
+
+/// Length-weighted middle of the line between a tooth's scanned triangles and its new ones, in the tooth's unit.
+Point middle_of_border(const CompletedTooth& tooth);
+
+}  // namespace rhizodont
