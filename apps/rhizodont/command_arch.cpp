@@ -77,7 +77,7 @@ void run(ArchCommand& command) {
   std::vector<std::filesystem::path> inputs = files_of_scan(command.scan, command.source);
   if (!command.lengths_file.empty()) {
     inputs.emplace_back(command.lengths_file);
-    for (const auto& [fdi, mm] : read_root_lengths(read_file_bytes(command.lengths_file)))
+    for (const auto& [fdi, mm] : load_root_lengths(command.lengths_file))
       if (!command.options.root_lengths.emplace(fdi, mm).second)
         throw UsageError(fmt::format("Tooth {} has two root lengths.", fdi));
   }
@@ -100,9 +100,8 @@ void run(ArchCommand& command) {
   if (!command.quiet) {
     print_summary(arch);
     for (const ToothClearance& c : arch.clearances)
-      for (const auto& mm : {c.root_root, c.root_crown, c.crown_root})
-        if (mm && *mm < 0)
-          fmt::print("{} and {} run into each other by {:.2f} mm at a root\n", c.first, c.second, -*mm);
+      if (const auto mm = c.of_roots(); mm && *mm < 0)
+        fmt::print("{} and {} run {:.2f} mm into each other at a root\n", c.first, c.second, -*mm);
     for (const std::string& note : arch.notes) fmt::print("{}\n", note);
     fmt::print("{} of {} teeth have roots; all is in {}\n", rooted, arch.teeth.size(), command.output);
   }

@@ -37,12 +37,12 @@ struct ArchOptions {
 /// One tooth of a scan.
 struct ToothOfArch {
   int fdi = 0;
-  TriangleMesh crown;                   ///< as cut from the scan
-  std::vector<int> scan_vertices;       ///< of the scan, for each vertex of `crown`
+  TriangleMesh crown;              ///< as cut from the scan
+  std::vector<int> scan_vertices;  ///< of the scan, for each vertex of `crown`
   /// Its record refers to `crown`; not there if it was refused. What closes the crown where the scan hides it at its
   /// neighbours is transition.
   std::optional<CompletedTooth> tooth;
-  /// mm, per vertex of the tooth: signed distance from the nearest other tooth, at most 10; negative inside of one
+  /// mm, per vertex of the tooth: signed distance from the nearest other tooth, at most 3; negative inside of one
   std::vector<double> clearance;
   std::string refusal;  ///< why there is no tooth; empty if there is one
 };
@@ -63,14 +63,18 @@ struct LongAxes {
 /// third of the root, so that several roots count together.
 LongAxes long_axes(const CompletedTooth& tooth);
 
-/// How near two teeth come, crown and root each for itself; the crown ends at the middle of its border, what closes it
-/// above that, where the scan hides it at its neighbours, is the crown's. In mm: exact distances of their triangles,
-/// negative (minus a depth) where they run into each other. A part that is missing has none.
+/// How near two teeth come, mm: exact distances of their triangles, negative (minus a depth) where they run into each
+/// other. A root begins at the crown's lowest point, as its length does; what closes a crown above that, where the scan
+/// hides it at its neighbours, is the crown's, and may run into the neighbour's a little. Nothing beyond what was
+/// asked.
 struct ToothClearance {
   int first = 0, second = 0;  ///< FDI numbers
   std::optional<double> crown_crown;
   std::optional<double> root_root;
   std::optional<double> root_crown, crown_root;  ///< the first's root and the second's crown, and the other way
+
+  /// The smallest in which a root has a part.
+  std::optional<double> of_roots() const;
 };
 
 struct CompletedArch {

@@ -94,11 +94,11 @@ std::map<int, ToothDirections> directions_of(const std::vector<ToothOfArch>& tee
   return directions;
 }
 
-/// Where a scan hides a crown at its neighbours, its border climbs, and what closes it there is new: vertices above the
-/// middle of the border, along the growth axis.
-std::vector<bool> closes_contact(const CompletedTooth& tooth) {
+/// New vertices above the crown's lowest point, from which a root's length is measured: where a scan hides a crown at
+/// its neighbours its border climbs, and they close it there.
+std::vector<bool> closes_crown(const CompletedTooth& tooth) {
   const Eigen::Vector3d& up = tooth.record.frame.growth_axis;
-  const double level = up.dot(middle_of_border(tooth));
+  const double level = lowest_of_crown(tooth);
   std::vector<bool> closes;
   for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v)
     closes.push_back(tooth.source[v] != VertexSource::scan && up.dot(tooth.mesh.vertices[v]) > level);
@@ -107,7 +107,7 @@ std::vector<bool> closes_contact(const CompletedTooth& tooth) {
 
 /// What closes a crown at its neighbours is transition, as no scanner saw it and it is no root either.
 void mark_contacts(CompletedTooth& tooth) {
-  const std::vector<bool> closes = closes_contact(tooth);
+  const std::vector<bool> closes = closes_crown(tooth);
   for (std::size_t v = 0; v < closes.size(); ++v)
     if (closes[v]) tooth.source[v] = VertexSource::transition;
 }
@@ -115,7 +115,7 @@ void mark_contacts(CompletedTooth& tooth) {
 /// The parts that clearances are told by: the crown with what closes it at its neighbours, and the root.
 std::vector<VertexSource> crown_and_root(const CompletedTooth& tooth) {
   std::vector<VertexSource> parts = tooth.source;
-  const std::vector<bool> closes = closes_contact(tooth);
+  const std::vector<bool> closes = closes_crown(tooth);
   for (std::size_t v = 0; v < parts.size(); ++v)
     if (closes[v]) parts[v] = VertexSource::scan;
   return parts;
@@ -265,6 +265,13 @@ TriangleMesh in_millimetres(const CompletedTooth& tooth) {
   return mesh;
 }
 
+/// The tooth as if its input had been in millimetres.
+CompletedTooth as_of_millimetres(CompletedTooth tooth) {
+  tooth.mesh = in_millimetres(tooth);
+  tooth.record.millimetres_per_unit = 1;
+  return tooth;
+}
+
 std::optional<double> millimetres(const std::optional<Approach>& approach) {
   return approach ? std::optional(approach->mm) : std::nullopt;
 }
@@ -292,8 +299,17 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
   for (std::size_t i = 0; i < arch.teeth.size(); ++i) {
     const ToothOfArch& tooth = arch.teeth[i];
     if (!tooth.tooth) continue;
+    const RootSteering& steering = tooth.tooth->options.steering;
+    try {
+      CompletedTooth unsteered =
+          steering.any() ? finish_tooth(prepared[i].value(), {}, options.tooth.transition) : *tooth.tooth;
+      roots.push_back(steerable_root(as_of_millimetres(std::move(unsteered)), steering));
+    } catch (const Error& error) {
+      arch.notes.push_back(
+          fmt::format("Tooth {} was left out where roots were brought apart: {}", tooth.fdi, error.what()));
+      continue;
+    }
     numbers.push_back(i);
-    roots.push_back(steerable_root(*tooth.tooth, tooth.tooth->options.steering));
     if (options.root_lengths.contains(tooth.fdi)) roots.back().shortest_mm = roots.back().length_mm;
     teeth.push_back({in_millimetres(*tooth.tooth), crown_and_root(*tooth.tooth)});
   }
@@ -330,6 +346,13 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
 }
 
 }  // namespace
+
+std::optional<double> ToothClearance::of_roots() const {
+  std::optional<double> least;
+  for (const auto& mm : {root_root, root_crown, crown_root})
+    if (mm && (!least || *mm < *least)) least = mm;
+  return least;
+}
 
 CompleteOptions ArchOptions::skirt_and_repair() {
   CompleteOptions options;

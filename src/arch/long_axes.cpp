@@ -6,16 +6,11 @@
 #include "mesh/geometry.hpp"
 #include "rhizodont/arch.hpp"
 
-#include <algorithm>
-#include <limits>
-
 namespace rhizodont {
 LongAxes long_axes(const CompletedTooth& tooth) {
   const Eigen::Vector3d& up = tooth.record.frame.growth_axis;
   const auto [lowest, highest] = extent_along(tooth.mesh.vertices, up);
-  double neck = std::numeric_limits<double>::max();
-  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v)
-    if (tooth.source[v] == VertexSource::scan) neck = std::min(neck, up.dot(tooth.mesh.vertices[v]));
+  const double neck = lowest_of_crown(tooth);
   const Point middle = middle_of_border(tooth);
   const double third = lowest + (neck - lowest) / 3;
   Point sum = Point::Zero();

@@ -5,6 +5,7 @@
 #include "mesh/geometry.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace rhizodont {
 
@@ -23,6 +24,14 @@ Point middle_of_border(const CompletedTooth& tooth) {
     }
   }
   return length > 0 ? Point(sum / length) : area_centroid(tooth.mesh);
+}
+
+double lowest_of_crown(const CompletedTooth& tooth) {
+  double lowest = std::numeric_limits<double>::max();
+  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v)
+    if (tooth.source[v] == VertexSource::scan)
+      lowest = std::min(lowest, tooth.record.frame.growth_axis.dot(tooth.mesh.vertices[v]));
+  return lowest;
 }
 
 }  // namespace rhizodont

@@ -83,7 +83,7 @@ MeshFile arch_in_one(const CompletedArch& arch) {
                             {"clearance", std::move(clearance)}};
   file.comments = {"whole teeth: scanned crowns with predicted roots, not the patient's anatomy",
                    "fdi: number of the tooth", "source: 0 scan, 1 transition, 2 predicted",
-                   "clearance: signed distance from the nearest other tooth, mm, at most 10"};
+                   "clearance: signed distance from the nearest other tooth, mm, at most 3"};
   return file;
 }
 

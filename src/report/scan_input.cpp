@@ -83,11 +83,24 @@ ScanInput scan_of_folder(const fs::path& folder) {
   return input;
 }
 
+/// The bytes of a file beside the scan; its name goes before the sentence of what is wrong with it.
+template <class Read>
+auto reading(const fs::path& path, const Read& read) {
+  try {
+    return read(read_file_bytes(path));
+  } catch (const InputError& error) {
+    throw error.reworded(path.string() + ": " + error.what());
+  }
+}
+
 RawLabels raw_labels(const fs::path& scan, const MeshFile& file, const ScanLabelSource& source) {
-  if (!source.labels.empty()) return labels_from_teeth3ds(read_file_bytes(source.labels), file);
-  if (!source.palette.empty()) return labels_from_colours(file, read_palette(read_file_bytes(source.palette)));
+  const auto from_file = [&](const std::string& json) { return labels_from_teeth3ds(json, file); };
+  if (!source.labels.empty()) return reading(source.labels, from_file);
+  if (!source.palette.empty())
+    return labels_from_colours(file,
+                               reading(source.palette, [](const std::string& text) { return read_palette(text); }));
   if (!source.array.empty() || has_label_array(file)) return labels_from_array(file, source.array);
-  if (is_there(beside(scan))) return labels_from_teeth3ds(read_file_bytes(beside(scan)), file);
+  if (is_there(beside(scan))) return reading(beside(scan), from_file);
   throw InputError(
       "Nothing tells this scan's teeth apart: it has no array of labels, and no file of labels lies beside it. Name "
       "one "
@@ -149,6 +162,10 @@ std::optional<int> tooth_in_name(const fs::path& file) {
       if (const auto fdi = read_fdi((*i)[1].str())) found.insert(*fdi);
   }
   return found.size() == 1 ? std::optional(*found.begin()) : std::nullopt;
+}
+
+std::map<int, double> load_root_lengths(const fs::path& path) {
+  return reading(path, [](const std::string& text) { return read_root_lengths(text); });
 }
 
 std::map<int, double> read_root_lengths(std::string_view text) {

@@ -47,4 +47,7 @@ std::optional<int> tooth_in_name(const std::filesystem::path& file);
 /// remark. Throws InputError, with the line, for anything else and for a tooth named twice.
 std::map<int, double> read_root_lengths(std::string_view text);
 
+/// The same of a file, whose name comes before what is wrong with it.
+std::map<int, double> load_root_lengths(const std::filesystem::path& path);
+
 }  // namespace rhizodont

@@ -63,5 +63,28 @@ for key in schema["else"]["required"]:
     if validator.is_valid(spoiled):
         failures.append(f"the schema lets pass a tooth without {key}")
 
+# An arch of two crowns, one of them under a milk tooth's number.
+arch_schema = json.loads((source / "docs/arch_report.schema.json").read_text())
+arch_validator = jsonschema.validators.validator_for(arch_schema)(arch_schema)
+arch_validator.check_schema(arch_schema)
+crowns = work / "crowns"
+crowns.mkdir()
+shutil.copy(samples / "crown_34.ply", crowns / "crown_34.ply")
+shutil.copy(samples / "crown_36.stl", crowns / "crown_75.stl")
+run = subprocess.run([program, "arch", str(crowns), "--e", "1", "--quiet", "-o", str(work / "arch")],
+                     capture_output=True, text=True)
+if run.returncode != 6:
+    failures.append(f"arch: exit code {run.returncode} instead of 6: {run.stderr}")
+else:
+    arch = json.loads((work / "arch/arch.json").read_text())
+    failures.extend(f"arch: {'/'.join(map(str, e.absolute_path))}: {e.message}" for e in arch_validator.iter_errors(arch))
+    failures.extend(f"tooth of an arch: {e.message}"
+                    for e in validator.iter_errors(json.loads((work / "arch/tooth_34.json").read_text())))
+    for key in arch_schema["required"]:
+        spoiled = copy.deepcopy(arch)
+        del spoiled[key]
+        if arch_validator.is_valid(spoiled):
+            failures.append(f"the schema lets pass an arch without {key}")
+
 print("\n".join(failures) if failures else "all reports fit the schema")
 sys.exit(1 if failures else 0)
