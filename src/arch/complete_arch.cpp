@@ -265,13 +265,6 @@ TriangleMesh in_millimetres(const CompletedTooth& tooth) {
   return mesh;
 }
 
-/// The tooth as if its input had been in millimetres.
-CompletedTooth as_of_millimetres(CompletedTooth tooth) {
-  tooth.mesh = in_millimetres(tooth);
-  tooth.record.millimetres_per_unit = 1;
-  return tooth;
-}
-
 std::optional<double> millimetres(const std::optional<Approach>& approach) {
   return approach ? std::optional(approach->mm) : std::nullopt;
 }
@@ -301,9 +294,8 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
     if (!tooth.tooth) continue;
     const RootSteering& steering = tooth.tooth->options.steering;
     try {
-      CompletedTooth unsteered =
-          steering.any() ? finish_tooth(prepared[i].value(), {}, options.tooth.transition) : *tooth.tooth;
-      roots.push_back(steerable_root(as_of_millimetres(std::move(unsteered)), steering));
+      roots.push_back(steerable_root(
+          steering.any() ? finish_tooth(prepared[i].value(), {}, options.tooth.transition) : *tooth.tooth, steering));
     } catch (const Error& error) {
       arch.notes.push_back(
           fmt::format("Tooth {} was left out where roots were brought apart: {}", tooth.fdi, error.what()));
