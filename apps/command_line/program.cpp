@@ -44,7 +44,7 @@ void describe(const Program& program, CLI::App& app) {
   app.set_version_flag("--version", fmt::format("{} {}", program.name, RHIZODONT_VERSION));
   app.footer(
       "Exit codes: 0 done, 2 wrong usage, 3 unusable input, 4 no result that keeps the promises, 5 fault of the "
-      "program, 6 results cannot be written.\n"
+      "program, 6 some teeth of several have no result, 7 results cannot be written.\n"
       "'" +
       program.name + " COMMAND --help' explains a command.");
   for (const auto add_command : program.commands) add_command(app);

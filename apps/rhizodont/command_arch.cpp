@@ -82,12 +82,13 @@ void run(ArchCommand& command) {
         throw UsageError(fmt::format("Tooth {} has two root lengths.", fdi));
   }
   for (const std::filesystem::path& file : model_files(models)) inputs.push_back(file);
-  const ScanInput input = read_scan(command.scan, command.source);
+  const ScanInput input = read_scan(command.scan, command.source, command.options.tooth.millimetres_per_unit);
   const std::vector<std::filesystem::path> names = arch_file_names(input.scan, command.files, command.output);
-  require_new(names, command.overwrite);
   require_safe_outputs(inputs, names);
+  require_new(names, command.overwrite);
   if (!command.quiet)
     for (const std::string& note : input.notes) fmt::print("{}\n", note);
+  std::fflush(stdout);  // the work takes a while
   if (std::filesystem::is_regular_file(command.scan)) {
     command.files.scan_sha256 = sha256_of_bytes(read_file_bytes(command.scan));
     if (command.name_in_report) command.files.scan_name = std::filesystem::path(command.scan).filename().string();

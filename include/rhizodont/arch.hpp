@@ -42,7 +42,8 @@ struct ToothOfArch {
   /// Its record refers to `crown`; not there if it was refused. What closes the crown where the scan hides it at its
   /// neighbours is transition.
   std::optional<CompletedTooth> tooth;
-  /// mm, per vertex of the tooth: signed distance from the nearest other tooth, at most 3; negative inside of one
+  /// mm, per vertex of the tooth: signed distance from the nearest other tooth of its jaw, at most 3; negative inside
+  /// of one
   std::vector<double> clearance;
   std::string refusal;  ///< why there is no tooth; empty if there is one
 };
@@ -79,13 +80,16 @@ struct ToothClearance {
 
 struct CompletedArch {
   std::vector<ToothOfArch> teeth;          ///< by FDI number
-  std::vector<ToothClearance> clearances;  ///< of all pairs that come nearer than 10 mm
+  std::vector<ToothClearance> clearances;  ///< of all pairs of a jaw that come nearer than 10 mm
   TriangleMesh gum;                        ///< what is no tooth's in the scan
   /// Directions of the scan to those of the patient: x to the left, y up, z to the front. Not there where the teeth
   /// leave it open; of a scan of both jaws the lower jaw's.
   std::optional<Eigen::Matrix3d> upright;
   std::vector<std::string> notes;  ///< sentences on the arch as a whole
 };
+
+/// Whether labelled teeth so far across, from the first to the last, can be an arch or a part of one: 2 to 150 mm.
+bool has_size_of_arch(double millimetres_across);
 
 /// Called after each tooth: how many are done, of how many, and the last one's number.
 using ArchProgress = std::function<void(int done, int teeth, int fdi)>;

@@ -53,12 +53,11 @@ void require_size_of_arch(const std::vector<ToothOfArch>& teeth, double millimet
   Eigen::AlignedBox3d box;
   for (const ToothOfArch& tooth : teeth) box.extend(bounding_box(tooth.crown.vertices));
   const double across = millimetres_per_unit * box.diagonal().norm();
-  constexpr double least = 2, most = 150;
-  if (across >= least && across <= most) return;
+  if (has_size_of_arch(across)) return;
   throw InputError(fmt::format(
       "The teeth of this scan are {:.4g} mm across from the first to the last; an arch has 20 to 110. Is the file in "
       "{}? Then say so with --unit.",
-      across, across < least ? "metres, centimetres or inches" : "micrometres"));
+      across, across < 2 ? "metres, centimetres or inches" : "micrometres"));
 }
 
 std::vector<ToothOfArch> cut(const LabelledScan& scan) {
@@ -269,29 +268,32 @@ std::optional<double> millimetres(const std::optional<Approach>& approach) {
   return approach ? std::optional(approach->mm) : std::nullopt;
 }
 
-void measure_clearances(CompletedArch& arch) {
+/// Of the teeth of one jaw: the jaws of a scan need not stand as they bite.
+void measure_clearances(CompletedArch& arch, bool upper) {
   std::vector<std::optional<SolidSurface>> surfaces(arch.teeth.size());
   std::vector<const SolidSurface*> teeth(arch.teeth.size(), nullptr);
   tbb::parallel_for(std::size_t{0}, arch.teeth.size(), [&](std::size_t i) {
-    const std::optional<CompletedTooth>& tooth = arch.teeth[i].tooth;
-    if (tooth) teeth[i] = &surfaces[i].emplace(tooth_surface(in_millimetres(*tooth), crown_and_root(*tooth)));
+    const ToothOfArch& tooth = arch.teeth[i];
+    if (tooth.tooth && is_upper(tooth.fdi) == upper)
+      teeth[i] = &surfaces[i].emplace(tooth_surface(in_millimetres(*tooth.tooth), crown_and_root(*tooth.tooth)));
   });
   for (const NeighbourClearance& pair : neighbour_clearances(teeth))
     arch.clearances.push_back({arch.teeth[pair.first].fdi, arch.teeth[pair.second].fdi,
                                millimetres(pair.clearance.crown_crown), millimetres(pair.clearance.root_root),
                                millimetres(pair.clearance.root_crown), millimetres(pair.clearance.crown_root)});
   std::vector<std::vector<double>> per_vertex = vertex_clearances(teeth);
-  for (std::size_t i = 0; i < per_vertex.size(); ++i) arch.teeth[i].clearance = std::move(per_vertex[i]);
+  for (std::size_t i = 0; i < per_vertex.size(); ++i)
+    if (teeth[i] != nullptr) arch.teeth[i].clearance = std::move(per_vertex[i]);
 }
 
-/// Brings roots apart; what cannot be is said in the arch's notes.
-void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& options) {
+/// Brings roots of one jaw apart; what cannot be is said in the arch's notes.
+void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& options, bool upper) {
   std::vector<std::size_t> numbers;
   std::vector<SteerableRoot> roots;
   std::vector<SourcedTooth> teeth;
   for (std::size_t i = 0; i < arch.teeth.size(); ++i) {
     const ToothOfArch& tooth = arch.teeth[i];
-    if (!tooth.tooth) continue;
+    if (!tooth.tooth || is_upper(tooth.fdi) != upper) continue;
     const RootSteering& steering = tooth.tooth->options.steering;
     try {
       roots.push_back(steerable_root(
@@ -346,6 +348,8 @@ std::optional<double> ToothClearance::of_roots() const {
   return least;
 }
 
+bool has_size_of_arch(double millimetres_across) { return millimetres_across >= 2 && millimetres_across <= 150; }
+
 CompleteOptions ArchOptions::skirt_and_repair() {
   CompleteOptions options;
   options.skirt = 0.5;
@@ -367,8 +371,10 @@ CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& mo
         directions_of(arch.teeth, *content.arch, options.tooth.millimetres_per_unit, arch.upright);
     const Prepared prepared = complete_each(arch.teeth, directions, models, options, progress);
     heed_measured(arch.teeth, prepared, options, arch.notes);
-    if (options.resolve_collisions) resolve(arch, prepared, options);
-    measure_clearances(arch);
+    for (const bool upper : {true, false}) {
+      if (options.resolve_collisions) resolve(arch, prepared, options, upper);
+      measure_clearances(arch, upper);
+    }
     return arch;
   });
 }

@@ -25,10 +25,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text_of(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
-
-Json numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 std::string name_of(const char* kind, int fdi, const std::string& ending) {
   return fmt::format("{}_{}.{}", kind, fdi, ending);
 }
@@ -172,6 +168,8 @@ Json tooth_json(const ToothOfArch& tooth, const ArchFileOptions& how) {
   const CompletionRecord& record = tooth.tooth->record;
   json["tooth_file"] = name_of("tooth", tooth.fdi, how.tooth_format);
   json["report_file"] = name_of("tooth", tooth.fdi, "json");
+  json["crown_triangles"] = record.crown.triangles;
+  json["kept_crown_triangles"] = record.crown.kept_triangles;
   json["root_length_mm"] = record.root.length_mm;
   json["root_length_80_percent_mm"] =
       record.root.interval ? Json{record.root.interval->length_low_mm, record.root.interval->length_high_mm}

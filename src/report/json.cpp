@@ -54,11 +54,14 @@ Json solid_json(const SolidCheck& solid) {
 
 Json directions_or_null(const std::optional<ToothDirections>& directions) {
   if (!directions) return nullptr;
-  const auto list = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
-  return {{"occlusal", list(directions->occlusal)}, {"buccal", list(directions->buccal)}};
+  return {{"occlusal", numbers(directions->occlusal)}, {"buccal", numbers(directions->buccal)}};
 }
 
 }  // namespace
+
+Json numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+std::string text_of(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
 
 void to_json(Json& json, const CompleteOptions& options) {
   const RootSteering& steering = options.steering;

@@ -6,9 +6,18 @@
 #include "rhizodont/complete.hpp"
 #include "rhizodont/measure.hpp"
 
+#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include <string>
+
 namespace rhizodont {
+
+/// The coordinates as a list.
+nlohmann::ordered_json numbers(const Eigen::Vector3d& v);
+/// A report's text: indented, with an end of line. Names need not be UTF-8; what is not is shown by a replacement
+/// character.
+std::string text_of(const nlohmann::ordered_json& json);
 
 // For `nlohmann::ordered_json(value)`. Lengths in mm, angles in degrees.
 void to_json(nlohmann::ordered_json& json, const CompleteOptions& options);

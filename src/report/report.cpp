@@ -19,8 +19,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json numbers(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
 Json rows(const Eigen::Matrix3d& m) {
   Json json = Json::array();
   for (int r = 0; r < 3; ++r) json.push_back(numbers(m.row(r)));
@@ -134,11 +132,6 @@ Json input_json(const ReportedInput& input) {
 /// What every report begins with.
 Json heading() {
   return {{"report_version", report_version}, {"program", {{"name", "rhizodont"}, {"version", RHIZODONT_VERSION}}}};
-}
-
-std::string text_of(const Json& json) {
-  // Names need not be UTF-8; what is not is shown by a replacement character.
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Json words_for(ElementKind kind) {

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <charconv>
 #include <map>
@@ -93,6 +95,13 @@ auto reading(const fs::path& path, const Read& read) {
   }
 }
 
+double teeth_across(const TriangleMesh& mesh, const std::vector<int>& fdi) {
+  Eigen::AlignedBox3d box;
+  for (std::size_t v = 0; v < fdi.size(); ++v)
+    if (fdi[v] != 0) box.extend(mesh.vertices[v]);
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
 RawLabels raw_labels(const fs::path& scan, const MeshFile& file, const ScanLabelSource& source) {
   const auto from_file = [&](const std::string& json) { return labels_from_teeth3ds(json, file); };
   if (!source.labels.empty()) return reading(source.labels, from_file);
@@ -109,7 +118,7 @@ RawLabels raw_labels(const fs::path& scan, const MeshFile& file, const ScanLabel
 
 }  // namespace
 
-ScanInput read_scan(const fs::path& path, const ScanLabelSource& source) {
+ScanInput read_scan(const fs::path& path, const ScanLabelSource& source, double millimetres_per_unit) {
   const auto given = static_cast<int>(!source.labels.empty()) + static_cast<int>(!source.array.empty()) +
                      static_cast<int>(!source.palette.empty());
   if (given > 1) throw UsageError("Labels come from one place: a file, an array, or colours.");
@@ -129,9 +138,14 @@ ScanInput read_scan(const fs::path& path, const ScanLabelSource& source) {
   input.scan.mesh = input.file.mesh;
   ScanLabels labels = decide_label_numbers(input.scan.mesh, raw.per_vertex, options);
   input.notes.push_back(fmt::format("Labels from {}. {}", raw.origin, labels.decided));
-  CleanedLabels cleaned = clean_labels(input.scan.mesh, labels.fdi);
-  for (const LabelChange& change : cleaned.changes) input.notes.push_back(describe(change));
-  input.scan.fdi = std::move(cleaned.fdi);
+  TriangleMesh in_millimetres = input.scan.mesh;
+  for (Point& p : in_millimetres.vertices) p *= millimetres_per_unit;
+  if (has_size_of_arch(teeth_across(in_millimetres, labels.fdi))) {  // else it will be refused for that
+    CleanedLabels cleaned = clean_labels(in_millimetres, labels.fdi);
+    for (const LabelChange& change : cleaned.changes) input.notes.push_back(describe(change));
+    labels.fdi = std::move(cleaned.fdi);
+  }
+  input.scan.fdi = std::move(labels.fdi);
   return input;
 }
 

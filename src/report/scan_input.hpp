@@ -34,7 +34,9 @@ struct ScanInput {
 /// the same name beside it (SCAN.json). A folder holds a crown a file, with the tooth's number in its name: 36, UR1,
 /// id_3 (universal). Labels are decided, cleaned, and given as FDI numbers. Throws InputError where there are none, or
 /// as the readers do; UsageError for more than one source.
-ScanInput read_scan(const std::filesystem::path& scan, const ScanLabelSource& source = {});
+/// @param millimetres_per_unit  of the scan: what is too small for a tooth is told in mm. The scan keeps its unit
+ScanInput read_scan(const std::filesystem::path& scan, const ScanLabelSource& source = {},
+                    double millimetres_per_unit = 1);
 
 /// The files that `read_scan` will read.
 std::vector<std::filesystem::path> files_of_scan(const std::filesystem::path& scan, const ScanLabelSource& source);

@@ -18,10 +18,10 @@ using test::TemporaryFolder;
 
 namespace {
 
-const std::filesystem::path shipped = std::filesystem::path(RHIZODONT_SOURCE_DIR) / "models" / "arch.safetensors";
+const std::filesystem::path shipped_file = std::filesystem::path(RHIZODONT_SOURCE_DIR) / "models" / "arch.safetensors";
 
 TEST(ArchModel, ShippedOneHasAll32TeethAndIsSymmetric) {
-  const ArchModel model = load_arch_model(shipped);
+  const ArchModel model = load_arch_model(shipped_file);
   ASSERT_EQ(model.teeth.size(), 32U);
   for (const auto& [left, tooth] : model.teeth) {
     if (left / 10 != 2 && left / 10 != 3) continue;
@@ -35,7 +35,7 @@ TEST(ArchModel, ShippedOneHasAll32TeethAndIsSymmetric) {
 }
 
 TEST(ArchModel, TeethStandAsInAMouth) {
-  const ArchModel model = load_arch_model(shipped);
+  const ArchModel model = load_arch_model(shipped_file);
   for (const auto& [fdi, tooth] : model.teeth) {
     const bool upper = fdi / 10 <= 2, left = fdi / 10 == 2 || fdi / 10 == 3;
     EXPECT_GT((upper ? -1 : 1) * tooth.directions.occlusal.y(), 0.7) << fdi;  // crowns face the other jaw
@@ -52,7 +52,7 @@ TEST(ArchModel, TeethStandAsInAMouth) {
 }
 
 TEST(ArchModel, ThirdMolarsStandBehindSecondOnes) {
-  const ArchModel model = load_arch_model(shipped);
+  const ArchModel model = load_arch_model(shipped_file);
   for (const int quadrant : {1, 2, 3, 4}) {
     const Point &second = model.teeth.at(10 * quadrant + 7).place, &third = model.teeth.at(10 * quadrant + 8).place;
     EXPECT_LT(third.z(), second.z() - 6) << quadrant;
@@ -64,7 +64,7 @@ TEST(ArchModel, ThirdMolarsStandBehindSecondOnes) {
 
 TEST(ArchModel, FilesGoOutAndIn) {
   const TemporaryFolder folder;
-  const ArchModel model = load_arch_model(shipped);
+  const ArchModel model = load_arch_model(shipped_file);
   save_arch_model(model, folder.path() / "arch.safetensors");
   const ArchModel again = load_arch_model(folder.path() / "arch.safetensors");
   for (const auto& [fdi, tooth] : model.teeth) {
@@ -77,7 +77,7 @@ TEST(ArchModel, DamagedFilesAreRefused) {
   const TemporaryFolder folder;
   const std::filesystem::path path = folder.path() / "arch.safetensors";
   EXPECT_THROW(load_arch_model(path), InputError);
-  const TensorFile good = read_safetensors(shipped);
+  const TensorFile good = read_safetensors(shipped_file);
   const auto refused = [&](const TensorFile& file) {
     write_safetensors(path, file);
     EXPECT_THROW(load_arch_model(path), InputError);
