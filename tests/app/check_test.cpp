@@ -215,7 +215,7 @@ TEST(Check, AVertexMergedAcrossASeamHasAnotherOneInItsPlace) {
     moved.push_back(static_cast<int>(t));
   }
   ASSERT_FALSE(moved.empty());
-  CheckOptions options = allowing_for({{"merged across a seam", {copy}, {}, {v}}});
+  CheckOptions options = allowing_for({RepairStep{RepairAction::seam_merged, {copy}, {}, {v}}});
   CheckReport report = check(pair.crown, pair.tooth, options);
   EXPECT_TRUE(report.holds()) << all_failures(report);
   EXPECT_EQ(report.crown.kept_triangles, static_cast<std::int64_t>(pair.crown.triangles.size()));
