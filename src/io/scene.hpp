@@ -17,7 +17,8 @@ struct SceneNode {
   std::array<float, 3> colour{};
 };
 
-/// A glTF 2.0 scene in its binary form (.glb), a named node for each mesh. To look at: coordinates are rounded to float.
+/// A glTF 2.0 scene in its binary form (.glb), a named node for each mesh. To look at: coordinates are rounded to
+/// float.
 std::string scene_bytes(const std::vector<SceneNode>& nodes);
 
 }  // namespace rhizodont
