@@ -106,6 +106,7 @@ void run(ArchCommand& command) {
     for (const std::string& note : arch.notes) fmt::print("{}\n", note);
     fmt::print("{} of {} teeth have roots; all is in {}\n", rooted, arch.teeth.size(), command.output);
   }
+  if (rooted == 0) exit_with(static_cast<int>(ErrorCode::no_result));
   if (rooted < static_cast<int>(arch.teeth.size())) exit_with(static_cast<int>(ErrorCode::partial));
 }
 

@@ -6,6 +6,7 @@
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/models.hpp"
 
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <optional>
@@ -88,8 +89,8 @@ struct CompletedArch {
   std::vector<std::string> notes;  ///< sentences on the arch as a whole
 };
 
-/// Whether labelled teeth so far across, from the first to the last, can be an arch or a part of one: 2 to 150 mm.
-bool has_size_of_arch(double millimetres_across);
+/// Whether so many labelled teeth, so far across from the first to the last, can be an arch or a part of one.
+bool has_size_of_arch(double millimetres_across, std::size_t teeth);
 
 /// Called after each tooth: how many are done, of how many, and the last one's number.
 using ArchProgress = std::function<void(int done, int teeth, int fdi)>;

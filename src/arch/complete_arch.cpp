@@ -16,6 +16,7 @@
 #include "segment/arch_pose.hpp"
 #include "segment/cut_crowns.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/label_numbers.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -32,7 +33,7 @@ namespace {
 /// Half of an interval that holds 80 % of a Gaussian, in deviations.
 constexpr double half_of_80_percent = 1.2816;
 
-bool is_upper(int fdi) { return fdi / 10 <= 2; }
+bool is_upper(int fdi) { return jaw_of_fdi(fdi) == Jaw::upper; }
 
 void require_in_range(const ArchOptions& options) {
   require_options_in_range(options.tooth);
@@ -48,16 +49,16 @@ void require_in_range(const ArchOptions& options) {
                                    shortest_root_mm, longest_root_mm));
 }
 
-/// Crowns of a labelled scan stand within an arch: 20 mm (one tooth) to 150 mm across.
 void require_size_of_arch(const std::vector<ToothOfArch>& teeth, double millimetres_per_unit) {
   Eigen::AlignedBox3d box;
   for (const ToothOfArch& tooth : teeth) box.extend(bounding_box(tooth.crown.vertices));
   const double across = millimetres_per_unit * box.diagonal().norm();
-  if (has_size_of_arch(across)) return;
-  throw InputError(fmt::format(
-      "The teeth of this scan are {:.4g} mm across from the first to the last; an arch has 20 to 110. Is the file in "
-      "{}? Then say so with --unit.",
-      across, across < 2 ? "metres, centimetres or inches" : "micrometres"));
+  if (has_size_of_arch(across, teeth.size())) return;
+  throw InputError(
+      fmt::format("The {} teeth of this scan are {:.4g} mm across from the first to the last, which teeth cannot be. "
+                  "Is the file in "
+                  "{}? Then say so with --unit.",
+                  teeth.size(), across, across < 40 ? "metres, centimetres or inches" : "micrometres"));
 }
 
 std::vector<ToothOfArch> cut(const LabelledScan& scan) {
@@ -70,6 +71,13 @@ std::vector<ToothOfArch> cut(const LabelledScan& scan) {
   }
   if (teeth.empty()) throw InputError("No triangle of the scan belongs to a tooth.");
   return teeth;
+}
+
+void require_lengths_of_teeth_there(const std::vector<ToothOfArch>& teeth, const ArchOptions& options) {
+  for (const auto& length : options.root_lengths)
+    if (std::none_of(teeth.begin(), teeth.end(), [&](const ToothOfArch& t) { return t.fdi == length.first; }))
+      throw UsageError(
+          fmt::format("A root length was given for tooth {}, which the scan does not have.", length.first));
 }
 
 /// How the permanent teeth stand, in jaws with enough of them; `upright`: as CompletedArch's.
@@ -141,6 +149,8 @@ template <class Work>
 void for_tooth(ToothOfArch& tooth, const Work& work) {
   try {
     work();
+  } catch (const UsageError&) {
+    throw;
   } catch (const Error& error) {
     tooth.tooth.reset();
     tooth.refusal = error.what();
@@ -185,6 +195,8 @@ void complete_one(ToothOfArch& tooth, const std::vector<Attempt>& attempts, cons
       mark_contacts(*tooth.tooth);
       if (!attempt.warning.empty()) tooth.tooth->record.warnings.push_back(attempt.warning);
       return;
+    } catch (const UsageError&) {
+      throw;
     } catch (const Error&) {
       if (!refused) refused = std::current_exception();
     }
@@ -215,6 +227,35 @@ Prepared complete_each(std::vector<ToothOfArch>& teeth, const std::map<int, Toot
   return prepared;
 }
 
+/// What was said of a tooth holds for the one that is made anew of the same crown.
+void keep_warnings(CompletionRecord& record, const CompletionRecord& before) {
+  for (const std::string& warning : before.warnings)
+    if (std::find(record.warnings.begin(), record.warnings.end(), warning) == record.warnings.end())
+      record.warnings.push_back(warning);
+}
+
+/// The tooth with its root as long as expected; it stays as it is where that gives no tooth.
+void give_length(ToothOfArch& tooth, const PreparedTooth& prepared, const LengthExpectation& length, bool measured,
+                 const ArchOptions& options) {
+  CompletionRecord& before = tooth.tooth->record;
+  try {
+    RootSteering steering = options.tooth.steering;
+    steering.length_mm = std::clamp(length.mm, shortest_root_mm, longest_root_mm);
+    CompletedTooth made = finish_tooth(prepared, steering, options.tooth.transition);
+    mark_contacts(made);
+    keep_warnings(made.record, before);
+    if (before.root.interval && !measured) {
+      const double half = half_of_80_percent * length.deviation_mm, mm = made.record.root.length_mm;
+      made.record.root.interval = {std::max(mm - half, shortest_root_mm), std::min(mm + half, longest_root_mm),
+                                   before.root.interval->apex_radius_mm};
+    }
+    tooth.tooth = std::move(made);
+  } catch (const NoResultError& error) {
+    before.warnings.push_back(
+        fmt::format("The root could not be given a length of {:.1f} mm: {}", length.mm, error.what()));
+  }
+}
+
 /// Moves the lengths of all teeth with those that were measured.
 void heed_measured(std::vector<ToothOfArch>& teeth, const Prepared& prepared, const ArchOptions& options,
                    std::vector<std::string>& notes) {
@@ -231,8 +272,6 @@ void heed_measured(std::vector<ToothOfArch>& teeth, const Prepared& prepared, co
   std::map<int, double> measured;
   for (const auto& [fdi, mm] : options.root_lengths) {
     const auto found = std::find_if(teeth.begin(), teeth.end(), [&](const ToothOfArch& t) { return t.fdi == fdi; });
-    if (found == teeth.end())
-      throw UsageError(fmt::format("A root length was given for tooth {}, which the scan does not have.", fdi));
     if (found->tooth) {
       measured[fdi] = mm;
     } else {
@@ -243,18 +282,7 @@ void heed_measured(std::vector<ToothOfArch>& teeth, const Prepared& prepared, co
   tbb::parallel_for(std::size_t{0}, teeth.size(), [&](std::size_t i) {
     ToothOfArch& tooth = teeth[i];
     if (!tooth.tooth) return;
-    const LengthExpectation length = lengths.at(tooth.fdi);
-    for_tooth(tooth, [&] {
-      RootSteering steering = options.tooth.steering;
-      steering.length_mm = std::clamp(length.mm, shortest_root_mm, longest_root_mm);
-      const std::optional<RootInterval> alone = tooth.tooth->record.root.interval;
-      tooth.tooth = finish_tooth(*prepared[i], steering, options.tooth.transition);
-      mark_contacts(*tooth.tooth);
-      if (!alone || measured.contains(tooth.fdi)) return;
-      const double half = half_of_80_percent * length.deviation_mm, mm = tooth.tooth->record.root.length_mm;
-      tooth.tooth->record.root.interval = {std::max(mm - half, shortest_root_mm), std::min(mm + half, longest_root_mm),
-                                           alone->apex_radius_mm};
-    });
+    give_length(tooth, *prepared[i], lengths.at(tooth.fdi), measured.contains(tooth.fdi), options);
   });
 }
 
@@ -304,7 +332,9 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
       continue;
     }
     numbers.push_back(i);
-    if (options.root_lengths.contains(tooth.fdi)) roots.back().shortest_mm = roots.back().length_mm;
+    const auto& interval = tooth.tooth->record.root.interval;
+    if (interval && !options.root_lengths.contains(tooth.fdi))
+      roots.back().shortest_mm = std::min(interval->length_low_mm, roots.back().length_mm);
     teeth.push_back({in_millimetres(*tooth.tooth), crown_and_root(*tooth.tooth)});
   }
   std::map<std::size_t, CompletedTooth> made;
@@ -326,12 +356,9 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
     // The last that was made need not be the one that was taken.
     const auto last = made.find(k);
     if (last == made.end() || last->second.options.steering != resolved.steering[k]) finish(k, resolved.steering[k]);
-    std::vector<std::string> warnings = std::move(tooth.tooth->record.warnings);
-    tooth.tooth = std::move(made.at(k));
-    for (std::string& warning : warnings)
-      if (std::find(tooth.tooth->record.warnings.begin(), tooth.tooth->record.warnings.end(), warning) ==
-          tooth.tooth->record.warnings.end())
-        tooth.tooth->record.warnings.push_back(std::move(warning));
+    CompletedTooth& changed = made.at(k);
+    keep_warnings(changed.record, tooth.tooth->record);
+    tooth.tooth = std::move(changed);
     tooth.tooth->record.warnings.push_back(fmt::format(
         "The root was changed by {:.1f} mm at its end to keep clear of its neighbours.", resolved.cost_mm[k]));
   }
@@ -348,7 +375,10 @@ std::optional<double> ToothClearance::of_roots() const {
   return least;
 }
 
-bool has_size_of_arch(double millimetres_across) { return millimetres_across >= 2 && millimetres_across <= 150; }
+bool has_size_of_arch(double millimetres_across, std::size_t teeth) {
+  // Lower incisors, the smallest of teeth, are 5 mm wide, and an arch of 16 bends to a third of its length.
+  return millimetres_across >= std::min(2.5 * static_cast<double>(teeth) + 1, 30.0) && millimetres_across <= 150;
+}
 
 CompleteOptions ArchOptions::skirt_and_repair() {
   CompleteOptions options;
@@ -361,10 +391,13 @@ CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& mo
                             const ArchProgress& progress) {
   require_in_range(options);
   const CompletionModels::Content& content = *content_of(models);
+  if (options.tooth.skirt && !content.skirt)
+    throw UsageError("The models' folder has no weights to find a skirt with (skirt.safetensors).");
   if (!content.arch) throw UsageError("The models' folder has no model of the arch (arch.safetensors).");
   return with_threads(options.tooth.threads, [&] {
     CompletedArch arch;
     arch.teeth = cut(scan);
+    require_lengths_of_teeth_there(arch.teeth, options);
     arch.gum = gum_of(scan.mesh, scan.fdi);
     require_size_of_arch(arch.teeth, options.tooth.millimetres_per_unit);
     const std::map<int, ToothDirections> directions =

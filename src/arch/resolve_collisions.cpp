@@ -128,7 +128,7 @@ class Resolving {
         now_.cost[i] = found.cost_mm[i];
         now_.at_limit[i] = found.at_limit[i];
         zoned_[i] = nullptr;
-      } catch (const NoResultError& error) {
+      } catch (const Error& error) {
         notes.push_back(fmt::format("Tooth {} keeps its root, for it could not be made otherwise: {}", roots_[i].fdi,
                                     error.what()));
         roots_[i].start = now_.steering[i];

@@ -52,6 +52,8 @@ std::map<int, Eigen::Matrix3d> turn_covariances(const std::filesystem::path& pat
         turns(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) =
             static_cast<double>(numbers[36 * i + 6 * (r + 3) + c + 3]);
   }
+  if (covariances.size() != 28 || covariances.contains(0))
+    throw InputError("The covariances of the arch are not those of 28 teeth.");
   return covariances;
 }
 

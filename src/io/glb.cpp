@@ -31,7 +31,8 @@ constexpr std::array<std::array<std::uint8_t, 4>, 3> source_colours{
 class GlbWriter {
  public:
   /// A mesh with its attributes; `colour`: of its material, where it has one of its own.
-  void add(const std::string& name, const MeshFile& file, const std::optional<std::array<float, 3>>& colour) {
+  void add(const std::string& name, const MeshFile& file, const std::optional<std::array<float, 3>>& colour,
+           double metres_per_unit) {
     Json attributes;
     attributes["POSITION"] = add_positions(file.mesh);
     attributes["NORMAL"] = add_normals(file.mesh);
@@ -39,7 +40,8 @@ class GlbWriter {
     const int indices = add_indices(file.mesh);
     const std::size_t number = nodes_.size();
     // glTF counts in metres; the scale of the node leaves the coordinates themselves as they are.
-    nodes_.push_back({{"mesh", number}, {"name", name}, {"scale", {0.001, 0.001, 0.001}}});
+    nodes_.push_back(
+        {{"mesh", number}, {"name", name}, {"scale", {metres_per_unit, metres_per_unit, metres_per_unit}}});
     Json material{{"name", name}, {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 0.6}}}};
     if (colour) material["pbrMetallicRoughness"]["baseColorFactor"] = {(*colour)[0], (*colour)[1], (*colour)[2], 1.0F};
     materials_.push_back(std::move(material));
@@ -81,7 +83,10 @@ class GlbWriter {
     for (const Point& p : mesh.vertices)
       for (int i = 0; i < 3; ++i) append_bytes(data_, static_cast<float>(p[i]));
     const Eigen::AlignedBox3d box = bounding_box(mesh.vertices);
-    const auto corner = [](const Point& p) { return Json{p.x(), p.y(), p.z()}; };
+    const auto corner = [](const Point& p) {  // as the floats above, to the bit
+      const Eigen::Vector3f f = p.cast<float>();
+      return Json{static_cast<double>(f.x()), static_cast<double>(f.y()), static_cast<double>(f.z())};
+    };
     return add_accessor(start, target_vertices, type_float, mesh.vertices.size(), "VEC3",
                         {{"min", corner(box.min())}, {"max", corner(box.max())}});
   }
@@ -141,16 +146,16 @@ std::string write_glb(const MeshFile& file) {
     throw UsageError(
         "GLB files hold single precision only, and this mesh has coordinates that need double; use PLY or OBJ");
   GlbWriter writer;
-  writer.add("tooth", file, std::nullopt);
+  writer.add("tooth", file, std::nullopt, 0.001);
   return writer.bytes();
 }
 
-std::string scene_bytes(const std::vector<SceneNode>& nodes) {
+std::string scene_bytes(const std::vector<SceneNode>& nodes, double millimetres_per_unit) {
   GlbWriter writer;
   for (const SceneNode& node : nodes) {
     MeshFile file;
     file.mesh = *node.mesh;
-    writer.add(node.name, file, node.colour);
+    writer.add(node.name, file, node.colour, 0.001 * millimetres_per_unit);
   }
   return writer.bytes();
 }

@@ -19,6 +19,6 @@ struct SceneNode {
 
 /// A glTF 2.0 scene in its binary form (.glb), a named node for each mesh. To look at: coordinates are rounded to
 /// float.
-std::string scene_bytes(const std::vector<SceneNode>& nodes);
+std::string scene_bytes(const std::vector<SceneNode>& nodes, double millimetres_per_unit = 1);
 
 }  // namespace rhizodont

@@ -37,8 +37,7 @@ MeshFile crown_file(const ToothOfArch& tooth, const MeshFile& scan) {
     part.type = attribute.type;
     for (const int v : tooth.scan_vertices) part.values.push_back(attribute.values[static_cast<std::size_t>(v)]);
   }
-  VertexAttribute& numbers_in_scan = file.vertex_attributes["scan_vertex"];
-  numbers_in_scan.type = AttributeType::int32;
+  VertexAttribute& numbers_in_scan = file.vertex_attributes["scan_vertex"] = {AttributeType::int32, {}};
   for (const int v : tooth.scan_vertices)
     numbers_in_scan.values.push_back(scan.file_vertices.empty() ? v : scan.file_vertices[static_cast<std::size_t>(v)]);
   file.comments = {"crown as cut from its scan; scan_vertex: number of the vertex in the scan's file, from 0"};
@@ -90,12 +89,12 @@ std::array<float, 3> colour_of(int fdi) {
   return colours[static_cast<std::size_t>(fdi % 10) % colours.size()];
 }
 
-std::string scene_of(const CompletedArch& arch) {
+std::string scene_of(const CompletedArch& arch, double millimetres_per_unit) {
   std::vector<SceneNode> nodes;
   for (const ToothOfArch& tooth : arch.teeth)
     if (tooth.tooth) nodes.push_back({fmt::format("tooth {}", tooth.fdi), &tooth.tooth->mesh, colour_of(tooth.fdi)});
   if (!arch.gum.triangles.empty()) nodes.push_back({"gum", &arch.gum, {0.72F, 0.38F, 0.36F}});
-  return scene_bytes(nodes);
+  return scene_bytes(nodes, millimetres_per_unit);
 }
 
 std::optional<Jaw> only_jaw(const std::vector<int>& labels) {
@@ -260,7 +259,7 @@ std::vector<OutputFile> arch_files(const ScanInput& input, const CompletedArch& 
   files.push_back({folder / "arch.json", text_of(report_json(input, arch, options, how))});
   if (!any) return files;
   const MeshFile all = arch_in_one(arch);
-  files.push_back({folder / "arch.glb", scene_of(arch)});
+  files.push_back({folder / "arch.glb", scene_of(arch, options.tooth.millimetres_per_unit)});
   files.push_back({folder / "arch.ply", mesh_file_bytes("arch.ply", all)});
   files.push_back({folder / "axes.json", text_of(axes_json(arch))});
   files.push_back({folder / "axes.mrk.json", text_of(slicer_json(arch))});

@@ -95,6 +95,12 @@ auto reading(const fs::path& path, const Read& read) {
   }
 }
 
+std::size_t count_teeth(const std::vector<int>& fdi) {
+  std::set<int> teeth(fdi.begin(), fdi.end());
+  teeth.erase(0);
+  return teeth.size();
+}
+
 double teeth_across(const TriangleMesh& mesh, const std::vector<int>& fdi) {
   Eigen::AlignedBox3d box;
   for (std::size_t v = 0; v < fdi.size(); ++v)
@@ -140,9 +146,13 @@ ScanInput read_scan(const fs::path& path, const ScanLabelSource& source, double 
   input.notes.push_back(fmt::format("Labels from {}. {}", raw.origin, labels.decided));
   TriangleMesh in_millimetres = input.scan.mesh;
   for (Point& p : in_millimetres.vertices) p *= millimetres_per_unit;
-  if (has_size_of_arch(teeth_across(in_millimetres, labels.fdi))) {  // else it will be refused for that
+  if (has_size_of_arch(teeth_across(in_millimetres, labels.fdi),
+                       count_teeth(labels.fdi))) {  // else it will be refused for that
     CleanedLabels cleaned = clean_labels(in_millimetres, labels.fdi);
-    for (const LabelChange& change : cleaned.changes) input.notes.push_back(describe(change));
+    for (LabelChange& change : cleaned.changes) {
+      change.at /= millimetres_per_unit;  // to be found in the scan
+      input.notes.push_back(describe(change));
+    }
     labels.fdi = std::move(cleaned.fdi);
   }
   input.scan.fdi = std::move(labels.fdi);

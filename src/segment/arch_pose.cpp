@@ -8,6 +8,7 @@
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/label_numbers.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -22,7 +23,7 @@
 namespace rhizodont {
 namespace {
 
-bool is_upper(int fdi) { return fdi / 10 <= 2; }
+bool is_upper(int fdi) { return jaw_of_fdi(fdi) == Jaw::upper; }
 
 void require_one_jaw(const std::map<int, CrownPlace>& crowns) {
   if (crowns.empty()) throw UsageError("There is no tooth to lay an arch on.");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rhizodont/arch.hpp"
 
+#include "common/temporary_folder.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -129,6 +130,27 @@ TEST(CompleteArch, RefusesWhatIsNoArch) {
   options = {};
   options.root_lengths[34] = 99;
   EXPECT_THROW(complete_arch(scan, models(), options), UsageError);
+}
+
+TEST(CompleteArch, ModelsWithoutASkirtNetworkAreSaidAtOnce) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"completion.safetensors", "atlas.safetensors", "arch.safetensors"})
+    std::filesystem::create_symlink(std::filesystem::path(RHIZODONT_SOURCE_DIR) / "models" / name,
+                                    folder.path() / name);
+  const LabelledScan scan = row_of({{"crown_34.ply", 74}});
+  EXPECT_THROW(complete_arch(scan, CompletionModels::load(folder.path())), UsageError);
+  std::filesystem::remove(folder.path() / "arch.safetensors");
+  ArchOptions options;
+  options.tooth.skirt.reset();
+  EXPECT_THROW(complete_arch(scan, CompletionModels::load(folder.path()), options), UsageError);
+}
+
+TEST(CompleteArch, SizesOfArchesDependOnTheirTeeth) {
+  EXPECT_TRUE(has_size_of_arch(70, 14));
+  EXPECT_TRUE(has_size_of_arch(8, 1));
+  EXPECT_FALSE(has_size_of_arch(7, 14));  // centimetres
+  EXPECT_FALSE(has_size_of_arch(0.07, 14));
+  EXPECT_FALSE(has_size_of_arch(700, 14));
 }
 
 TEST(CompleteArch, WhatProgressThrowsComesThrough) {
