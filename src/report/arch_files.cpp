@@ -4,6 +4,7 @@
 
 #include "io/scene.hpp"
 #include "io/write_labels.hpp"
+#include "mesh/append_mesh.hpp"
 #include "pictures/render.hpp"
 #include "report/json.hpp"
 #include "rhizodont/report.hpp"
@@ -50,15 +51,6 @@ MeshFile with_clearance(MeshFile file, const ToothOfArch& tooth) {
   return file;
 }
 
-void append(TriangleMesh& all, const TriangleMesh& part) {
-  const auto before = static_cast<std::int32_t>(all.vertices.size());
-  all.vertices.insert(all.vertices.end(), part.vertices.begin(), part.vertices.end());
-  for (Triangle t : part.triangles) {
-    for (std::int32_t& v : t) v += before;
-    all.triangles.push_back(t);
-  }
-}
-
 /// All teeth in one mesh.
 MeshFile arch_in_one(const CompletedArch& arch) {
   MeshFile file;
@@ -66,7 +58,7 @@ MeshFile arch_in_one(const CompletedArch& arch) {
       uncertainty{AttributeType::float32, {}}, clearance{AttributeType::float32, {}};
   for (const ToothOfArch& tooth : arch.teeth) {
     if (!tooth.tooth) continue;
-    append(file.mesh, tooth.tooth->mesh);
+    append_mesh(file.mesh, tooth.tooth->mesh);
     fdi.values.resize(file.mesh.vertices.size(), tooth.fdi);
     for (const VertexSource s : tooth.tooth->source) source.values.push_back(static_cast<double>(s));
     for (const double u : tooth.tooth->uncertainty) uncertainty.values.push_back(static_cast<float>(u));

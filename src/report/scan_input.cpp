@@ -4,6 +4,7 @@
 
 #include "base/lower_case.hpp"
 #include "io/scan_labels.hpp"
+#include "mesh/append_mesh.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/tooth_file.hpp"
 #include "teeth/fdi.hpp"
@@ -68,14 +69,8 @@ ScanInput scan_of_folder(const fs::path& folder) {
       throw InputError(fmt::format("{} and {} are both of tooth {}.", first->second.filename().string(),
                                    path.filename().string(), fdi));
     const MeshFile crown = load_mesh(path);
-    TriangleMesh& all = input.file.mesh;
-    const auto before = static_cast<std::int32_t>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), crown.mesh.vertices.begin(), crown.mesh.vertices.end());
-    for (Triangle t : crown.mesh.triangles) {
-      for (std::int32_t& v : t) v += before;
-      all.triangles.push_back(t);
-    }
-    input.scan.fdi.resize(all.vertices.size(), fdi);
+    append_mesh(input.file.mesh, crown.mesh);
+    input.scan.fdi.resize(input.file.mesh.vertices.size(), fdi);
     input.file.coordinates_fit_float = input.file.coordinates_fit_float && crown.coordinates_fit_float;
     for (const std::string& note : crown.notes) input.notes.push_back(fmt::format("Tooth {}: {}", fdi, note));
   }
