@@ -144,19 +144,6 @@ class Count {
   int done_ = 0, teeth_;
 };
 
-/// Runs what one tooth needs; where that gives up, the tooth says why.
-template <class Work>
-void for_tooth(ToothOfArch& tooth, const Work& work) {
-  try {
-    work();
-  } catch (const UsageError&) {
-    throw;
-  } catch (const Error& error) {
-    tooth.tooth.reset();
-    tooth.refusal = error.what();
-  }
-}
-
 /// How a tooth is tried, one way after the other, with what the user is to know where it is not the first.
 struct Attempt {
   CompleteOptions options;
@@ -215,11 +202,15 @@ Prepared complete_each(std::vector<ToothOfArch>& teeth, const std::map<int, Toot
       [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
           ToothOfArch& tooth = teeth[i];
-          for_tooth(tooth, [&] {
+          try {
             if (!is_permanent_tooth(tooth.fdi))
               throw InputError(fmt::format("Tooth {} is a milk tooth, and no model knows their roots.", tooth.fdi));
             complete_one(tooth, attempts_for(tooth.fdi, directions, options.tooth), models, prepared[i]);
-          });
+          } catch (const UsageError&) {
+            throw;
+          } catch (const Error& error) {
+            tooth.refusal = error.what();
+          }
           count.one_more(tooth.fdi);
         }
       },
