@@ -89,10 +89,8 @@ void run(ArchCommand& command) {
   if (!command.quiet)
     for (const std::string& note : input.notes) fmt::print("{}\n", note);
   std::fflush(stdout);  // the work takes a while
-  if (std::filesystem::is_regular_file(command.scan)) {
-    command.files.scan_sha256 = sha256_of_bytes(read_file_bytes(command.scan));
-    if (command.name_in_report) command.files.scan_name = std::filesystem::path(command.scan).filename().string();
-  }
+  if (command.name_in_report && !input.sha256.empty())
+    command.files.scan_name = std::filesystem::path(command.scan).filename().string();
   const CompletedArch arch =
       complete_arch(input.scan, CompletionModels::load(models), command.options, progress_line(command.quiet));
   write_output_files(arch_files(input, arch, command.options, command.files, command.output));

@@ -197,7 +197,7 @@ Json report_json(const ScanInput& input, const CompletedArch& arch, const ArchOp
           {"notice", "Predicted roots are not the patient's anatomy. For research and visualisation only."},
           {"input",
            {{"file", how.scan_name ? Json(*how.scan_name) : Json(nullptr)},
-            {"sha256", how.scan_sha256.empty() ? Json(nullptr) : Json(how.scan_sha256)}}},
+            {"sha256", input.sha256.empty() ? Json(nullptr) : Json(input.sha256)}}},
           {"options",
            {{"tooth", Json(options.tooth)},
             {"root_lengths_mm", lengths},

@@ -18,7 +18,6 @@ inline constexpr int arch_report_version = 1;
 struct ArchFileOptions {
   std::string tooth_format = "ply";      ///< ply, stl, obj or glb
   std::optional<std::string> scan_name;  ///< for the report; names tell of patients
-  std::string scan_sha256;               ///< of the scan's file; empty: not known
 };
 
 /// Everything that a completed arch gives, as files of a folder:

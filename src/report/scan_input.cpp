@@ -6,6 +6,7 @@
 #include "io/scan_labels.hpp"
 #include "mesh/append_mesh.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/report.hpp"
 #include "rhizodont/tooth_file.hpp"
 #include "teeth/fdi.hpp"
 #include "teeth/label_numbers.hpp"
@@ -128,7 +129,10 @@ ScanInput read_scan(const fs::path& path, const ScanLabelSource& source, double 
     return scan_of_folder(path);
   }
   ScanInput input;
-  input.file = load_mesh(path);
+  input.file = reading(path, [&](const std::string& bytes) {
+    input.sha256 = sha256_of_bytes(bytes);
+    return read_mesh(bytes, path);
+  });
   input.notes = input.file.notes;
   input.file.notes.clear();
   RawLabels raw = raw_labels(path, input.file, source);

@@ -25,7 +25,8 @@ struct ScanLabelSource {
 
 /// A scan with its teeth, as read.
 struct ScanInput {
-  MeshFile file;  ///< of a folder: all crowns, one after the other, without attributes
+  MeshFile file;       ///< of a folder: all crowns, one after the other, without attributes
+  std::string sha256;  ///< of the scan's file as it lies there; empty for a folder
   LabelledScan scan;
   std::vector<std::string> notes;  ///< of reading, what the numbers were taken for, what was cleaned; a sentence each
 };
