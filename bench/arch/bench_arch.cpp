@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// How the roots of labelled scans stand and how long arches take: bench_arch axes|time SCAN.ply... (labels beside each,
-// as SCAN.json in the form of Teeth3DS). `axes` lays each tooth's root axis beside its neighbours' mean, for crowns
-// alone and for the arch, and the means of each type beside those of Tong et al., Am J Orthod Dentofacial Orthop
-// 2012;141:604. `time` takes arches beside their teeth one after the other.
+// How the roots of labelled scans stand, whether a scan's pose has a say in them, and how long arches take: bench_arch
+// axes|pose|time SCAN.ply... (labels beside each, as SCAN.json in the form of Teeth3DS). `axes` lays each tooth's root
+// axis beside its neighbours' mean, for crowns alone and for the arch, and the means of each type beside those of Tong
+// et al., Am J Orthod Dentofacial Orthop 2012;141:604. `pose` completes each scan three times: as it is, with its
+// elements in another order, and turned, moved and rounded to float. `time` takes arches beside their teeth one after
+// the other.
 #include "common/stopwatch.hpp"
+#include "mesh/closest_point.hpp"
 #include "rhizodont/arch.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -22,6 +25,8 @@
 #include <filesystem>
 #include <map>
 #include <numbers>
+#include <numeric>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -162,15 +167,108 @@ void axes(const std::vector<std::filesystem::path>& scans, const CompletionModel
   }
 }
 
+/// The same scan with vertices and triangles in another order, and triangles beginning elsewhere.
+LabelledScan shuffled(const LabelledScan& scan) {
+  std::mt19937 random(7);
+  std::vector<int> vertices(scan.mesh.vertices.size()), triangles(scan.mesh.triangles.size());
+  std::iota(vertices.begin(), vertices.end(), 0);
+  std::iota(triangles.begin(), triangles.end(), 0);
+  std::shuffle(vertices.begin(), vertices.end(), random);
+  std::shuffle(triangles.begin(), triangles.end(), random);
+  LabelledScan result;
+  std::vector<std::int32_t> place(vertices.size());
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const auto from = static_cast<std::size_t>(vertices[v]);
+    place[from] = static_cast<std::int32_t>(v);
+    result.mesh.vertices.push_back(scan.mesh.vertices[from]);
+    result.fdi.push_back(scan.fdi[from]);
+  }
+  for (const int t : triangles) {
+    Triangle corners = scan.mesh.triangles[static_cast<std::size_t>(t)];
+    for (std::int32_t& v : corners) v = place[static_cast<std::size_t>(v)];
+    std::rotate(corners.begin(), corners.begin() + t % 3, corners.end());
+    result.mesh.triangles.push_back(corners);
+  }
+  return result;
+}
+
+LabelledScan moved(LabelledScan scan, const Eigen::Isometry3d& move) {
+  for (Point& p : scan.mesh.vertices) p = (move * p).cast<float>().cast<double>();
+  return scan;
+}
+
+std::vector<std::array<double, 3>> sorted_vertices(const TriangleMesh& mesh) {
+  std::vector<std::array<double, 3>> vertices;
+  for (const Point& p : mesh.vertices) vertices.push_back({p.x(), p.y(), p.z()});
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+void pose(const std::vector<std::filesystem::path>& scans, const CompletionModels& models) {
+  int teeth = 0, identical = 0, turned_teeth = 0;
+  std::vector<double> means, largest;
+  for (const auto& path : scans) {
+    const LabelledScan scan = read_scan(path);
+    Eigen::Isometry3d move =
+        Eigen::Translation3d(31, -12, 55) * Eigen::AngleAxisd(2.1, Eigen::Vector3d(1, -2, 0.5).normalized());
+    const CompletedArch first = complete_arch(scan, models), other = complete_arch(shuffled(scan), models),
+                        turned = complete_arch(moved(scan, move), models);
+    for (std::size_t i = 0; i < first.teeth.size(); ++i) {
+      const ToothOfArch &a = first.teeth[i], &b = other.teeth.at(i), &c = turned.teeth.at(i);
+      ++teeth;
+      identical += a.tooth.has_value() == b.tooth.has_value() &&
+                   (!a.tooth || sorted_vertices(a.tooth->mesh) == sorted_vertices(b.tooth->mesh));
+      if (a.tooth.has_value() != c.tooth.has_value())
+        fmt::print("{} {}: with a root in one pose alone\n", path.stem().string(), a.fdi);
+      if (!a.tooth || !c.tooth) continue;
+      ++turned_teeth;
+      const ClosestPointIndex index(a.tooth->mesh);
+      double sum = 0, most = 0;
+      for (const Point& p : c.tooth->mesh.vertices) {
+        const double mm = index.closest(move.inverse() * p).distance;
+        sum += mm;
+        most = std::max(most, mm);
+      }
+      means.push_back(sum / static_cast<double>(c.tooth->mesh.vertices.size()));
+      largest.push_back(most);
+      if (most > 0.05) fmt::print("{} {}: up to {:.3f} mm\n", path.stem().string(), a.fdi, most);
+    }
+  }
+  fmt::print("another order: {} of {} teeth identical\n", identical, teeth);
+  if (largest.empty()) return;
+  std::sort(largest.begin(), largest.end());
+  fmt::print(
+      "another pose: {} teeth, {:.5f} mm off in the mean; farthest places: median {:.5f}, 90 % {:.5f}, all "
+      "{:.3f} mm\n",
+      turned_teeth, std::accumulate(means.begin(), means.end(), 0.0) / static_cast<double>(means.size()),
+      largest[largest.size() / 2], largest[largest.size() * 9 / 10], largest.back());
+}
+
+void time(const std::vector<std::filesystem::path>& scans, const CompletionModels& models) {
+  fmt::print("scan  triangles  teeth  read s  arch s  teeth one by one s  ratio\n");
+  for (const auto& path : scans) {
+    LabelledScan scan;
+    CompletedArch arch;
+    const double read = median_seconds([&] { scan = read_scan(path); }, 1);
+    const double together = median_seconds([&] { arch = complete_arch(scan, models); }, 3);
+    const double alone = median_seconds([&] { axes_alone(arch, models); }, 1);
+    fmt::print("{:>16}  {:>7}  {:>2}  {:.2f}  {:.2f}  {:.2f}  {:.2f}\n", path.stem().string(),
+               scan.mesh.triangles.size(), arch.teeth.size(), read, together, alone, together / alone);
+  }
+  fmt::print("peak memory {:.0f} MB\n", peak_memory_mb());
+}
+
 }  // namespace
 
 int main(int count, char** words) {
   const std::vector<std::filesystem::path> scans(words + std::min(count, 2), words + count);
-  if (scans.empty()) {
-    fmt::print(stderr, "usage: bench_arch axes|time SCAN.ply...\n");
+  const std::map<std::string, void (*)(const std::vector<std::filesystem::path>&, const CompletionModels&)> modes{
+      {"axes", axes}, {"pose", pose}, {"time", time}};
+  const auto mode = modes.find(count > 1 ? words[1] : "");
+  if (mode == modes.end() || scans.empty()) {
+    fmt::print(stderr, "usage: bench_arch axes|pose|time SCAN.ply...\n");
     return 2;
   }
-  const CompletionModels models = CompletionModels::load(default_models_folder());
-  axes(scans, models);
+  mode->second(scans, CompletionModels::load(default_models_folder()));
   return 0;
 }

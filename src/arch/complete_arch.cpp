@@ -9,6 +9,7 @@
 #include "arch/resolve_collisions.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/space_order.hpp"
 #include "pipeline/models.hpp"
 #include "pipeline/prepared_tooth.hpp"
 #include "rhizodont/arch.hpp"
@@ -88,7 +89,8 @@ std::map<int, ToothDirections> directions_of(const std::vector<ToothOfArch>& tee
     std::map<int, CrownPlace> places;
     for (const ToothOfArch& tooth : teeth) {
       if (!is_permanent_tooth(tooth.fdi) || is_upper(tooth.fdi) != upper) continue;
-      CrownPlace place = place_of_crown(tooth.crown);
+      // In an order of its own, so that sums do not round otherwise where the scan has another one.
+      CrownPlace place = place_of_crown(reordered(tooth.crown, space_order(tooth.crown, 1e-3 / millimetres_per_unit)));
       place.middle *= millimetres_per_unit;
       places.emplace(tooth.fdi, place);
     }

@@ -23,6 +23,8 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <numeric>
 #include <vector>
 
 namespace rhizodont {
@@ -74,10 +76,10 @@ RootRecord root_record(const TriangleMesh& crown, const TriangleMesh& tooth, con
 
 /// How far new vertices and the root's length may be off. `tooth` in mm, the kept crown's vertices first.
 void note_uncertainty(const PreparedCrown& crown, const TriangleMesh& tooth, const PredictedTooth& predicted,
-                      const RootSteering& steering, CompletedTooth& completed) {
+                      const Eigen::Vector3d& growth_axis, const RootSteering& steering, CompletedTooth& completed) {
   CompletionRecord& record = completed.record;
   completed.uncertainty = expected_distances(tooth, crown, predicted, GuidingCloudOptions().correction_reach);
-  record.root.apex_expected_distance_mm = expected_distance_at_apex(predicted, record.frame.growth_axis);
+  record.root.apex_expected_distance_mm = expected_distance_at_apex(predicted, growth_axis);
   const std::optional<UncertaintyScales> scales = uncertainty_scales(record.model);
   if (!scales) return;
   for (double& u : completed.uncertainty) u *= scales->surface;
@@ -103,7 +105,7 @@ void put_in_place(const TriangleMesh& fused, const TriangleMesh& input, const st
   CompletionRecord& record = tooth.record;
   tooth.mesh = in_input_coordinates(fused, input, kept, place);
   record.promises = evidence(input, tooth.mesh, record);
-  if (!record.promises.holds() && place.as_float && !place.origin.isZero(0)) {
+  if (!record.promises.holds() && place.as_float && place.is_far) {
     place.as_float = false;
     tooth.mesh = in_input_coordinates(fused, input, kept, place);
     record.promises = evidence(input, tooth.mesh, record);
@@ -117,10 +119,48 @@ void put_in_place(const TriangleMesh& fused, const TriangleMesh& input, const st
   throw NoResultError(sentence);
 }
 
+/// Numbers of those that are `kept` of the input, in the input's order.
+std::vector<int> in_order_of_input(const std::vector<int>& kept) {
+  std::vector<int> order(kept.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return kept[static_cast<std::size_t>(a)] < kept[static_cast<std::size_t>(b)]; });
+  return order;
+}
+
+/// A tooth with the kept crown's vertices and triangles as the input has them one after the other, and triangles
+/// beginning with the same corner. @param tooth  the crown's first, as they come at the workplace
+TriangleMesh with_crown_in_order(const TriangleMesh& tooth, const PreparedTooth::Content& prepared) {
+  if (!prepared.place.reordered) return tooth;
+  TriangleMesh result = tooth;
+  const std::vector<int> vertices = in_order_of_input(prepared.old_vertices);
+  std::vector<std::int32_t> place(tooth.vertices.size());
+  std::iota(place.begin(), place.end(), 0);
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    result.vertices[v] = tooth.vertices[static_cast<std::size_t>(vertices[v])];
+    place[static_cast<std::size_t>(vertices[v])] = static_cast<std::int32_t>(v);
+  }
+  const std::vector<int> triangles = in_order_of_input(prepared.old_triangles);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto from = static_cast<std::size_t>(triangles[t]);
+    Triangle corners = tooth.triangles[from];
+    const std::int32_t first = prepared.input.triangles[static_cast<std::size_t>(prepared.old_triangles[from])][0];
+    const auto begins = std::find_if(corners.begin(), corners.end(), [&](std::int32_t v) {
+      return prepared.old_vertices[static_cast<std::size_t>(v)] == first;
+    });
+    if (begins != corners.end()) std::rotate(corners.begin(), begins, corners.end());
+    result.triangles[t] = corners;
+  }
+  for (Triangle& t : result.triangles)
+    for (std::int32_t& v : t) v = place[static_cast<std::size_t>(v)];
+  return result;
+}
+
 /// Joins the steered root to the crown. `tooth`: its options, and the record of the preparation.
 void finish(const PreparedTooth::Content& prepared, StageClock& clock, CompletedTooth& tooth) {
   CompletionRecord& record = tooth.record;
   const PreparedCrown& crown = prepared.crown;
+  const Eigen::Vector3d growth_axis = prepared.frame.direction_to_world(Eigen::Vector3d::UnitZ());
   const RootSteering& steering = tooth.options.steering;
   clock.begin("joining");
   TriangleMesh surface = prepared.surface.mesh;
@@ -135,20 +175,22 @@ void finish(const PreparedTooth::Content& prepared, StageClock& clock, Completed
         record.joining.guiding_distance_max_mm));
   FuseOptions fuse;
   fuse.transition.width = tooth.options.transition;
-  const FusedTooth fused = on_part(prepared.old_vertices, prepared.old_triangles,
-                                   [&] { return fuse_crown_and_root(crown, surface, record.frame.growth_axis, fuse); });
+  FusedTooth fused = on_part(prepared.old_vertices, prepared.old_triangles,
+                             [&] { return fuse_crown_and_root(crown, surface, growth_axis, fuse); });
   note_fusion(fused, record.joining);
   record.warnings.insert(record.warnings.end(), fused.warnings.begin(), fused.warnings.end());
-  record.root = root_record(crown.mesh, fused.tooth.mesh, record.frame.growth_axis, record.root.source);
-  note_uncertainty(crown, fused.tooth.mesh, predicted, steering, tooth);
+  record.root = root_record(crown.mesh, fused.tooth.mesh, growth_axis, record.root.source);
+  note_uncertainty(crown, fused.tooth.mesh, predicted, growth_axis, steering, tooth);
 
   clock.begin("check");
-  put_in_place(fused.tooth.mesh, prepared.input, prepared.old_vertices, prepared.place, tooth);
-  tooth.source.assign(tooth.mesh.vertices.size(), VertexSource::predicted);
-  std::fill_n(tooth.source.begin(), prepared.old_vertices.size(), VertexSource::scan);
+  const std::vector<int>& kept = record.crown.kept_vertices;
+  tooth.source.assign(fused.tooth.mesh.vertices.size(), VertexSource::predicted);
+  std::fill_n(tooth.source.begin(), kept.size(), VertexSource::scan);
   for (const int v : fused.transition.vertices) tooth.source[static_cast<std::size_t>(v)] = VertexSource::transition;
-  record.missed_places = where_promise_three_is_missed(tooth.mesh, prepared.old_vertices, crown.mesh.triangles.size(),
-                                                       record.promises.new_triangles);
+  fused.tooth.mesh = with_crown_in_order(fused.tooth.mesh, prepared);
+  put_in_place(fused.tooth.mesh, prepared.input, kept, prepared.place, tooth);
+  record.missed_places =
+      where_promise_three_is_missed(tooth.mesh, kept, crown.mesh.triangles.size(), record.promises.new_triangles);
 }
 
 }  // namespace
@@ -165,8 +207,8 @@ CompletedTooth finish_tooth(const PreparedTooth& prepared, const RootSteering& s
   return with_threads(content.options.threads, [&] {
     StageClock clock(progress);
     const auto hint = [&] {
-      return hint_at_options(moved_by(content.input, -content.place.origin), *content.models, content.options,
-                             content.old_vertices);
+      return hint_at_options(at_workplace(content.input, content.place), content.place, *content.models,
+                             content.options, content.old_vertices);
     };
     letting_callbacks_throw([&] { hinting([&] { finish(content, clock, tooth); }, hint); });
     const std::vector<StageRecord> stages = clock.finish();

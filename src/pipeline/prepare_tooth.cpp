@@ -19,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -32,16 +33,10 @@ CrownRecord crown_record(const TriangleMesh& input, const TakenCrown& taken) {
   record.kept_triangles = static_cast<int>(taken.kept.mesh.triangles.size());
   record.cap_dropped = taken.record.cap_dropped;
   record.kept_vertices = taken.kept.old_vertices;
+  std::sort(record.kept_vertices.begin(), record.kept_vertices.end());
   record.dropped_vertices = taken.kept.dropped;
   record.tooth_confidence = taken.record.tooth_confidence;
   return record;
-}
-
-/// In the input's frame, of a pose at the workplace.
-FrameRecord frame_record(const CrownFrame& found, const Workplace& place) {
-  const CanonicalFrame& pose = found.frame;
-  return {pose.direction_to_world(Eigen::Vector3d::UnitZ()), pose.rotation,
-          pose.centre + place.millimetres_per_unit * place.origin, pose.mirrored, found.residual_mm};
 }
 
 /// What the user is to know of where the root comes from.
@@ -79,6 +74,16 @@ Root find_root(const PreparedCrown& crown, const IdentifiedTooth& tooth, const C
   return root;
 }
 
+/// What the tooth will keep, with the input's numbers.
+TakenCrown take_at_workplace(const TriangleMesh& crown_at_work, const Workplace& place,
+                             const CompletionModels::Content& models, const CompleteOptions& options) {
+  return on_part(place.order.vertices, place.order.triangles, [&] {
+    TakenCrown taken = take_crown(crown_at_work, models.atlas, models.skirt, options);
+    number_as_input(taken, place);
+    return taken;
+  });
+}
+
 /// `kept_vertices`: says how far it came where this throws.
 std::shared_ptr<const PreparedTooth::Content> prepare(const TriangleMesh& input, const Workplace& place,
                                                       const TriangleMesh& crown_at_work,
@@ -87,7 +92,7 @@ std::shared_ptr<const PreparedTooth::Content> prepare(const TriangleMesh& input,
                                                       std::vector<int>& kept_vertices) {
   const CompletionModels::Content& models = *shared_models;
   clock.begin("crown");
-  TakenCrown taken = take_crown(crown_at_work, models.atlas, models.skirt, options);
+  TakenCrown taken = take_at_workplace(crown_at_work, place, models, options);
   kept_vertices = taken.kept.old_vertices;
   CompletionRecord record;
   record.millimetres_per_unit = options.millimetres_per_unit;
@@ -95,10 +100,11 @@ std::shared_ptr<const PreparedTooth::Content> prepare(const TriangleMesh& input,
   record.repairs = std::move(taken.record.repairs);
   record.skirt_model = std::move(taken.record.skirt_model);
   PreparedCrown crown = prepare_crown(std::move(taken.kept.mesh));
-  if (options.directions) crown.growth_axis = axis_in_arch(crown.growth_axis, options.directions->occlusal);
+  const std::optional<ToothDirections> directions = at_workplace(options.directions, place);
+  if (directions) crown.growth_axis = axis_in_arch(crown.growth_axis, directions->occlusal);
 
   clock.begin("frame");
-  const IdentifiedTooth tooth = identify_tooth(crown, options.fdi, options.directions, models);
+  const IdentifiedTooth tooth = identify_tooth(crown, options.fdi, directions, models);
   record.fdi = tooth.fdi;
   record.fdi_guessed = tooth.guessed;
   record.likeness = tooth.likeness;
@@ -108,7 +114,7 @@ std::shared_ptr<const PreparedTooth::Content> prepare(const TriangleMesh& input,
   record.model = models.network.metadata();
   Root root = on_part(taken.kept.old_vertices, taken.kept.old_triangles,
                       [&] { return find_root(crown, tooth, models, options.e, clock); });
-  record.frame = frame_record(root.prediction.frame, place);
+  record.frame = in_input_coordinates(root.prediction.frame, place);
   record.root.source = root.prediction.source;
   if (auto warning = source_warning(root.prediction.source, tooth.fdi)) record.warnings.push_back(*std::move(warning));
   record.stages = clock.finish();
@@ -119,12 +125,14 @@ std::shared_ptr<const PreparedTooth::Content> prepare(const TriangleMesh& input,
 }
 
 /// Whether with these options another part of the crown is kept than `kept_vertices`, and taken for a tooth.
-bool takes_another_part(const TriangleMesh& crown_at_work, const CompletionModels::Content& models,
-                        const CompleteOptions& options, const std::vector<int>& kept_vertices) {
+bool takes_another_part(const TriangleMesh& crown_at_work, const Workplace& place,
+                        const CompletionModels::Content& models, const CompleteOptions& options,
+                        const std::vector<int>& kept_vertices) {
   try {
-    TakenCrown part = take_crown(crown_at_work, models.atlas, models.skirt, options);
+    TakenCrown part = take_at_workplace(crown_at_work, place, models, options);
     if (part.kept.old_vertices == kept_vertices) return false;
-    identify_tooth(prepare_crown(std::move(part.kept.mesh)), options.fdi, options.directions, models);
+    identify_tooth(prepare_crown(std::move(part.kept.mesh)), options.fdi, at_workplace(options.directions, place),
+                   models);
     return true;
   } catch (const Error&) {
     return false;
@@ -155,10 +163,11 @@ void require_options_in_range(const CompleteOptions& options) {
   require_steering_in_range(options.steering);
 }
 
-std::string hint_at_options(const TriangleMesh& crown_at_work, const CompletionModels::Content& models,
-                            const CompleteOptions& options, const std::vector<int>& kept_vertices) {
+std::string hint_at_options(const TriangleMesh& crown_at_work, const Workplace& place,
+                            const CompletionModels::Content& models, const CompleteOptions& options,
+                            const std::vector<int>& kept_vertices) {
   return way_out(options, models.skirt.has_value(), [&](const CompleteOptions& other) {
-    return takes_another_part(crown_at_work, models, other, kept_vertices);
+    return takes_another_part(crown_at_work, place, models, other, kept_vertices);
   });
 }
 
@@ -173,13 +182,15 @@ PreparedTooth prepare_tooth(const TriangleMesh& crown, const CompletionModels& m
   require_options_in_range(options);
   return with_threads(options.threads, [&] {
     StageClock clock(progress);
-    const Workplace place = workplace(crown, options.millimetres_per_unit);
-    const TriangleMesh crown_at_work = moved_by(crown, -place.origin);
+    const Workplace place = workplace(crown, options.millimetres_per_unit, options.directions);
+    const TriangleMesh crown_at_work = at_workplace(crown, place);
     std::vector<int> kept_vertices;
     const auto work = [&] {
       return prepare(crown, place, crown_at_work, content_of(models), options, clock, kept_vertices);
     };
-    const auto hint = [&] { return hint_at_options(crown_at_work, *content_of(models), options, kept_vertices); };
+    const auto hint = [&] {
+      return hint_at_options(crown_at_work, place, *content_of(models), options, kept_vertices);
+    };
     return PreparedTooth(letting_callbacks_throw([&] { return hinting(work, hint); }));
   });
 }

@@ -25,7 +25,7 @@ struct PreparedTooth::Content {
   CompletionRecord record;
   TriangleMesh input;
   Workplace place;
-  std::vector<int> old_vertices, old_triangles;  ///< of the kept crown in the input
+  std::vector<int> old_vertices, old_triangles;  ///< of the kept crown in the input, in the workplace's order
   PreparedCrown crown;                           ///< what is kept, at the workplace
   CanonicalFrame frame;                          ///< in which the root was predicted
   PredictedTooth predicted;
@@ -36,9 +36,10 @@ struct PreparedTooth::Content {
 void require_options_in_range(const CompleteOptions& options);
 
 /// The sentence on options that may help a crown that was refused with these (`way_out`). @param crown_at_work the
-/// input at the workplace @param kept_vertices what was kept of it, as far as that is known
-std::string hint_at_options(const TriangleMesh& crown_at_work, const CompletionModels::Content& models,
-                            const CompleteOptions& options, const std::vector<int>& kept_vertices);
+/// input at the workplace @param kept_vertices what was kept of it, as far as that is known, with the input's numbers
+std::string hint_at_options(const TriangleMesh& crown_at_work, const Workplace& place,
+                            const CompletionModels::Content& models, const CompleteOptions& options,
+                            const std::vector<int>& kept_vertices);
 
 /// Runs `work`; a refusal that comes out of it gets `hint()`, a sentence or nothing, at its end.
 template <class Work, class Hint>

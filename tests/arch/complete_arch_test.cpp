@@ -3,6 +3,7 @@
 #include "rhizodont/arch.hpp"
 
 #include "common/temporary_folder.hpp"
+#include "mesh/closest_point.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -10,9 +11,12 @@
 #include <gtest/gtest.h>
 #include <Eigen/Geometry>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstring>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -90,6 +94,87 @@ TEST(CompleteArch, IsTheSameForAnyNumberOfThreads) {
     ASSERT_TRUE(a.teeth[i].tooth && b.teeth[i].tooth);
     EXPECT_EQ(a.teeth[i].tooth->mesh.vertices, b.teeth[i].tooth->mesh.vertices);
     EXPECT_EQ(a.teeth[i].tooth->mesh.triangles, b.teeth[i].tooth->mesh.triangles);
+  }
+}
+
+/// The same scan with its elements the other way round, and triangles beginning elsewhere.
+LabelledScan reversed(const LabelledScan& scan) {
+  LabelledScan result = scan;
+  std::reverse(result.mesh.vertices.begin(), result.mesh.vertices.end());
+  std::reverse(result.fdi.begin(), result.fdi.end());
+  std::reverse(result.mesh.triangles.begin(), result.mesh.triangles.end());
+  const auto last = static_cast<std::int32_t>(scan.mesh.vertices.size()) - 1;
+  for (Triangle& t : result.mesh.triangles) t = {last - t[1], last - t[2], last - t[0]};
+  return result;
+}
+
+using Corners = std::array<std::array<double, 3>, 3>;
+
+std::multiset<Corners> triangles_of(const TriangleMesh& mesh) {
+  std::multiset<Corners> triangles;
+  for (const Triangle& t : mesh.triangles) {
+    Corners corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Point& p = mesh.vertices[static_cast<std::size_t>(t[i])];
+      corners[i] = {p.x(), p.y(), p.z()};
+    }
+    std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
+    triangles.insert(corners);
+  }
+  return triangles;
+}
+
+TEST(CompleteArch, TheOrderOfAScansElementsHasNoSay) {
+  const LabelledScan scan = row_of({{"crown_36.stl", 36}, {"crown_34.ply", 34}});
+  const CompletedArch a = complete_arch(scan, models()), b = complete_arch(reversed(scan), models());
+  ASSERT_EQ(b.teeth.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ToothOfArch &first = a.teeth[i], &second = b.teeth[i];
+    ASSERT_TRUE(first.tooth && second.tooth);
+    ASSERT_TRUE(first.tooth->options.directions);
+    EXPECT_EQ(triangles_of(first.tooth->mesh), triangles_of(second.tooth->mesh)) << first.fdi;
+    // Each as its own scan has it: vertices and triangles of the crown in its order, beginning with the same corner.
+    for (const ToothOfArch* tooth : {&first, &second}) {
+      const std::vector<int>& kept = tooth->tooth->record.crown.kept_vertices;
+      EXPECT_TRUE(std::is_sorted(kept.begin(), kept.end()));
+      std::vector<Triangle> of_crown;
+      for (Triangle t : tooth->tooth->mesh.triangles) {
+        if (std::any_of(t.begin(), t.end(), [&](int v) { return static_cast<std::size_t>(v) >= kept.size(); }))
+          continue;
+        for (std::int32_t& v : t) v = kept[static_cast<std::size_t>(v)];
+        of_crown.push_back(t);
+      }
+      auto next = tooth->crown.triangles.begin();
+      bool in_order = of_crown.size() > 500;
+      for (const Triangle& t : of_crown) {
+        next = std::find(next, tooth->crown.triangles.end(), t);
+        in_order = in_order && next != tooth->crown.triangles.end();
+        if (!in_order) break;
+        ++next;
+      }
+      EXPECT_TRUE(in_order);
+    }
+  }
+}
+
+TEST(CompleteArch, TheScansPoseHasNoSay) {
+  LabelledScan scan = row_of({{"crown_36.stl", 36}, {"crown_34.ply", 34}});
+  const Eigen::Isometry3d move =
+      Eigen::Translation3d(40, -700, 9) * Eigen::AngleAxisd(2, Eigen::Vector3d(1, 2, -1).normalized());
+  const CompletedArch a = complete_arch(scan, models());
+  for (Point& p : scan.mesh.vertices) p = move * p;
+  const CompletedArch b = complete_arch(scan, models());
+  for (std::size_t i = 0; i < 2; ++i) {
+    ASSERT_TRUE(a.teeth[i].tooth && b.teeth[i].tooth);
+    const CompletedTooth &first = *a.teeth[i].tooth, &second = *b.teeth[i].tooth;
+    EXPECT_NEAR(first.record.root.length_mm, second.record.root.length_mm, 0.02);
+    EXPECT_NEAR((move.linear() * first.record.frame.growth_axis - second.record.frame.growth_axis).norm(), 0, 1e-4);
+    EXPECT_NEAR((move * first.record.frame.centre - second.record.frame.centre).norm(), 0, 1e-3);
+    EXPECT_NEAR((first.record.frame.rotation - second.record.frame.rotation * move.linear()).norm(), 0, 1e-4);
+    const ClosestPointIndex index(first.mesh);
+    double sum = 0;
+    for (const Point& p : second.mesh.vertices) sum += index.closest(move.inverse() * p).distance;
+    EXPECT_LT(sum / static_cast<double>(second.mesh.vertices.size()), 0.01) << a.teeth[i].fdi;
   }
 }
 
