@@ -91,21 +91,20 @@ void run(ArchCommand& command) {
   std::fflush(stdout);  // the work takes a while
   if (command.name_in_report && !input.sha256.empty())
     command.files.scan_name = std::filesystem::path(command.scan).filename().string();
-  const CompletedArch arch =
+  CompletedArch arch =
       complete_arch(input.scan, CompletionModels::load(models), command.options, progress_line(command.quiet));
+  refuse_what_no_file_holds(arch, command.files);
   write_output_files(arch_files(input, arch, command.options, command.files, command.output));
-  int rooted = 0;
-  for (const ToothOfArch& tooth : arch.teeth) rooted += tooth.tooth.has_value();
   if (!command.quiet) {
     print_summary(arch);
     for (const ToothClearance& c : arch.clearances)
       if (const auto mm = c.of_roots(); mm && *mm < 0)
         fmt::print("{} and {} run {:.2f} mm into each other at a root\n", c.first, c.second, -*mm);
     for (const std::string& note : arch.notes) fmt::print("{}\n", note);
-    fmt::print("{} of {} teeth have roots; all is in {}\n", rooted, arch.teeth.size(), command.output);
+    fmt::print("{} of {} teeth have roots; all is in {}\n", arch.rooted(), arch.teeth.size(), command.output);
   }
-  if (rooted == 0) exit_with(static_cast<int>(ErrorCode::no_result));
-  if (rooted < static_cast<int>(arch.teeth.size())) exit_with(static_cast<int>(ErrorCode::partial));
+  if (arch.rooted() == 0) exit_with(static_cast<int>(ErrorCode::no_result));
+  if (arch.rooted() < static_cast<int>(arch.teeth.size())) exit_with(static_cast<int>(ErrorCode::partial));
 }
 
 void add_label_options(CLI::App& arch, const std::shared_ptr<ArchCommand>& command) {
@@ -121,6 +120,14 @@ void add_label_options(CLI::App& arch, const std::shared_ptr<ArchCommand>& comma
           [command](const std::string& word) { command->source.jaw = word == "upper" ? Jaw::upper : Jaw::lower; },
           "upper or lower, where numbers run along the arch")
       ->check(CLI::IsMember({"upper", "lower"}));
+  arch.add_option_function<std::string>(
+          "--first-label",
+          [command](const std::string& word) { command->source.first_is_patients_right = word == "right"; },
+          "The patient's side at which numbers along the arch begin: right or left; by the scan's form if not given")
+      ->check(CLI::IsMember({"right", "left"}));
+  arch.add_flag("--labels-vtp", command->files.labels_vtp, "Write the labels as labels.vtp, too (cells, FDI numbers)");
+  arch.add_flag("--labels-vtk", command->files.labels_vtk,
+                "Write the labels as labels.vtk, too (points, Universal_ID, 33 is gum)");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 // et al., Am J Orthod Dentofacial Orthop 2012;141:604. `pose` completes each scan three times: as it is, with its
 // elements in another order, and turned, moved and rounded to float. `time` takes arches beside their teeth one after
 // the other.
+#include "base/float_bits.hpp"
 #include "common/stopwatch.hpp"
 #include "mesh/closest_point.hpp"
 #include "rhizodont/arch.hpp"
@@ -193,7 +194,7 @@ LabelledScan shuffled(const LabelledScan& scan) {
 }
 
 LabelledScan moved(LabelledScan scan, const Eigen::Isometry3d& move) {
-  for (Point& p : scan.mesh.vertices) p = (move * p).cast<float>().cast<double>();
+  for (Point& p : scan.mesh.vertices) p = nearest_float(move * p);
   return scan;
 }
 

@@ -87,6 +87,9 @@ struct CompletedArch {
   /// leave it open; of a scan of both jaws the lower jaw's.
   std::optional<Eigen::Matrix3d> upright;
   std::vector<std::string> notes;  ///< sentences on the arch as a whole
+
+  /// How many teeth have a root.
+  int rooted() const;
 };
 
 /// Whether so many labelled teeth, so far across from the first to the last, can be an arch or a part of one.
@@ -98,8 +101,9 @@ using ArchProgress = std::function<void(int done, int teeth, int fdi)>;
 /// Every tooth of a labelled scan with its root. Each stands as its place among the others tells where at least two
 /// teeth of its jaw are there. A tooth that is refused (milk teeth always are: no model knows them) does not stop the
 /// others. The same for any number of threads.
+/// The same teeth, but for rounding, in any pose of the scan; with its elements in another order the very same.
 /// @param progress  never called by two threads at once; what it throws stops the work and comes through
-/// Throws InputError for a scan without teeth or of another size than an arch, UsageError for options out of range, for
+/// Throws InputError for a scan without teeth, with numbers of no tooth or of another size than an arch, UsageError for options out of range, for
 /// lengths of teeth that are not there, and where the models' folder lacks what is needed.
 CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& models, const ArchOptions& options = {},
                             const ArchProgress& progress = {});

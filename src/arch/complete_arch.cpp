@@ -21,6 +21,7 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,6 +49,13 @@ void require_in_range(const ArchOptions& options) {
     if (!(mm >= shortest_root_mm && mm <= longest_root_mm))
       throw UsageError(fmt::format("A root length of {} mm for tooth {} is out of its range, {} to {} mm.", mm, fdi,
                                    shortest_root_mm, longest_root_mm));
+}
+
+void require_numbers_of_teeth(const std::vector<int>& fdi) {
+  for (std::size_t v = 0; v < fdi.size(); ++v)
+    if (fdi[v] != 0 && !is_permanent_tooth(fdi[v]) && !is_milk_tooth(fdi[v]))
+      throw InputError(fmt::format("No tooth has the number {}.", fdi[v]), {static_cast<std::int64_t>(v)},
+                       ElementKind::vertices);
 }
 
 void require_size_of_arch(const std::vector<ToothOfArch>& teeth, double millimetres_per_unit) {
@@ -119,6 +127,8 @@ void mark_contacts(CompletedTooth& tooth) {
   const std::vector<bool> closes = closes_crown(tooth);
   for (std::size_t v = 0; v < closes.size(); ++v)
     if (closes[v]) tooth.source[v] = VertexSource::transition;
+  tooth.record.joining.transition_vertices =
+      static_cast<int>(std::count(tooth.source.begin(), tooth.source.end(), VertexSource::transition));
 }
 
 /// The parts that clearances are told by: the crown with what closes it at its neighbours, and the root.
@@ -135,9 +145,11 @@ class Count {
  public:
   Count(const ArchProgress& progress, std::size_t teeth) : progress_(progress), teeth_(static_cast<int>(teeth)) {}
   void one_more(int fdi) {
+    if (!progress_) return;
     const std::lock_guard<std::mutex> guard(mutex_);
-    ++done_;
-    if (progress_) progress_(done_, teeth_, fdi);
+    // Isolated: a callback that runs in parallel itself must not be given another tooth, which would wait for the
+    // guard.
+    tbb::this_task_arena::isolate([&] { progress_(++done_, teeth_, fdi); });
   }
 
  private:
@@ -173,6 +185,17 @@ std::vector<Attempt> attempts_for(int fdi, const std::map<int, ToothDirections>&
   return attempts;
 }
 
+/// Who labelled the crown took all of it for tooth.
+void warn_of_loss(CompletionRecord& record) {
+  constexpr double most_lost = 0.25;
+  const CrownRecord& crown = record.crown;
+  if (crown.kept_triangles < (1 - most_lost) * crown.triangles)
+    record.warnings.push_back(
+        fmt::format("Only {} of the {} triangles that are labelled as this tooth were kept, the others taken for gum "
+                    "or damage: look at the crown.",
+                    crown.kept_triangles, crown.triangles));
+}
+
 /// The first attempt that gives a tooth. Throws as the first one where none does.
 void complete_one(ToothOfArch& tooth, const std::vector<Attempt>& attempts, const CompletionModels& models,
                   std::optional<PreparedTooth>& prepared) {
@@ -182,6 +205,7 @@ void complete_one(ToothOfArch& tooth, const std::vector<Attempt>& attempts, cons
       prepared = prepare_tooth(tooth.crown, models, attempt.options);
       tooth.tooth = finish_tooth(*prepared, attempt.options.steering, attempt.options.transition);
       mark_contacts(*tooth.tooth);
+      warn_of_loss(tooth.tooth->record);
       if (!attempt.warning.empty()) tooth.tooth->record.warnings.push_back(attempt.warning);
       return;
     } catch (const UsageError&) {
@@ -317,8 +341,10 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
     if (!tooth.tooth || is_upper(tooth.fdi) != upper) continue;
     const RootSteering& steering = tooth.tooth->options.steering;
     try {
-      roots.push_back(steerable_root(
-          steering.any() ? finish_tooth(prepared[i].value(), {}, options.tooth.transition) : *tooth.tooth, steering));
+      const CompletedTooth unsteered =
+          steering.any() ? finish_tooth(prepared[i].value(), {}, options.tooth.transition) : *tooth.tooth;
+      roots.push_back(steerable_root(unsteered, steering));
+      roots.back().source = crown_and_root(unsteered);
     } catch (const Error& error) {
       arch.notes.push_back(
           fmt::format("Tooth {} was left out where roots were brought apart: {}", tooth.fdi, error.what()));
@@ -361,6 +387,11 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
 
 }  // namespace
 
+int CompletedArch::rooted() const {
+  return static_cast<int>(
+      std::count_if(teeth.begin(), teeth.end(), [](const ToothOfArch& t) { return t.tooth.has_value(); }));
+}
+
 std::optional<double> ToothClearance::of_roots() const {
   std::optional<double> least;
   for (const auto& mm : {root_root, root_crown, crown_root})
@@ -388,6 +419,7 @@ CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& mo
     throw UsageError("The models' folder has no weights to find a skirt with (skirt.safetensors).");
   if (!content.arch) throw UsageError("The models' folder has no model of the arch (arch.safetensors).");
   return with_threads(options.tooth.threads, [&] {
+    require_numbers_of_teeth(scan.fdi);
     CompletedArch arch;
     arch.teeth = cut(scan);
     require_lengths_of_teeth_there(arch.teeth, options);

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <set>
@@ -184,11 +185,7 @@ Json clearances_json(const CompletedArch& arch) {
 Json report_json(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,
                  const ArchFileOptions& how) {
   Json teeth = Json::array(), lengths = Json::object();
-  int rooted = 0;
-  for (const ToothOfArch& tooth : arch.teeth) {
-    teeth.push_back(tooth_json(tooth, how));
-    rooted += tooth.tooth.has_value();
-  }
+  for (const ToothOfArch& tooth : arch.teeth) teeth.push_back(tooth_json(tooth, how));
   for (const auto& [fdi, mm] : options.root_lengths) lengths[std::to_string(fdi)] = mm;
   std::vector<std::string> notes = input.notes;
   notes.insert(notes.end(), arch.notes.begin(), arch.notes.end());
@@ -203,7 +200,7 @@ Json report_json(const ScanInput& input, const CompletedArch& arch, const ArchOp
             {"root_lengths_mm", lengths},
             {"resolve_collisions", options.resolve_collisions},
             {"clearance_mm", options.clearance_mm}}},
-          {"rooted", rooted},
+          {"rooted", arch.rooted()},
           {"teeth", teeth},
           {"clearances", clearances_json(arch)},
           {"notes", notes}};
@@ -225,12 +222,48 @@ std::string picture_of(const MeshFile& all, const Eigen::Matrix3d& upright) {
       options));
 }
 
+/// The number of all corners, else gum.
+std::vector<int> per_triangle(const TriangleMesh& mesh, const std::vector<int>& per_vertex) {
+  std::vector<int> labels;
+  for (const Triangle& t : mesh.triangles) {
+    const int first = per_vertex[static_cast<std::size_t>(t[0])];
+    const bool alike =
+        std::all_of(t.begin(), t.end(), [&](int v) { return per_vertex[static_cast<std::size_t>(v)] == first; });
+    labels.push_back(alike ? first : 0);
+  }
+  return labels;
+}
+
+void add_labels(const ScanInput& input, const ArchFileOptions& how, const std::filesystem::path& folder,
+                std::vector<OutputFile>& files) {
+  if (input.is_folder) return;
+  const std::vector<int>& fdi = input.scan.fdi;
+  files.push_back({folder / "labels.json", teeth3ds_json(fdi, only_jaw(fdi), input.file)});
+  if (how.labels_vtp)
+    files.push_back({folder / "labels.vtp", vtp_with_cell_labels(input.scan.mesh, per_triangle(input.scan.mesh, fdi))});
+  if (how.labels_vtk)
+    files.push_back(
+        {folder / "labels.vtk", vtk_with_point_labels(input.scan.mesh, numbered_as(fdi, LabelNumbers::universal))});
+}
+
 }  // namespace
+
+void refuse_what_no_file_holds(CompletedArch& arch, const ArchFileOptions& how) {
+  for (ToothOfArch& tooth : arch.teeth) {
+    if (!tooth.tooth) continue;
+    try {
+      require_format_holds(*tooth.tooth, name_of("tooth", tooth.fdi, how.tooth_format));
+    } catch (const NoResultError& error) {
+      tooth.refusal = error.what();
+      tooth.tooth.reset();
+      tooth.clearance.clear();
+    }
+  }
+}
 
 std::vector<OutputFile> arch_files(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,
                                    const ArchFileOptions& how, const std::filesystem::path& folder) {
   std::vector<OutputFile> files;
-  bool any = false;
   for (const ToothOfArch& tooth : arch.teeth) {
     const std::filesystem::path crown_path = folder / name_of("crown", tooth.fdi, "ply");
     const MeshFile crown = crown_file(tooth, input.file);
@@ -238,18 +271,16 @@ std::vector<OutputFile> arch_files(const ScanInput& input, const CompletedArch& 
     const std::string crown_sha256 = sha256_of_bytes(crown_bytes);
     files.push_back({crown_path, std::move(crown_bytes)});
     if (!tooth.tooth) continue;
-    any = true;
     const std::filesystem::path path = folder / name_of("tooth", tooth.fdi, how.tooth_format);
     CompletedTooth referring = *tooth.tooth;
-    require_format_holds(referring, path);
     files.push_back({path, mesh_file_bytes(path, with_clearance(tooth_file(referring, crown), tooth))});
     refer_to_file(referring.record, crown, path);
     files.push_back(
         {folder / name_of("tooth", tooth.fdi, "json"), completion_report(referring, {crown_sha256, {}, {}})});
   }
-  files.push_back({folder / "labels.json", teeth3ds_json(input.scan.fdi, only_jaw(input.scan.fdi), input.file)});
+  add_labels(input, how, folder, files);
   files.push_back({folder / "arch.json", text_of(report_json(input, arch, options, how))});
-  if (!any) return files;
+  if (arch.rooted() == 0) return files;
   const MeshFile all = arch_in_one(arch);
   files.push_back({folder / "arch.glb", scene_of(arch, options.tooth.millimetres_per_unit)});
   files.push_back({folder / "arch.ply", mesh_file_bytes("arch.ply", all)});
@@ -265,6 +296,8 @@ std::vector<std::filesystem::path> arch_file_names(const LabelledScan& scan, con
   for (const char* name :
        {"labels.json", "arch.json", "arch.glb", "arch.ply", "axes.json", "axes.mrk.json", "arch.png"})
     names.push_back(folder / name);
+  if (how.labels_vtp) names.push_back(folder / "labels.vtp");
+  if (how.labels_vtk) names.push_back(folder / "labels.vtk");
   const std::set<int> teeth(scan.fdi.begin(), scan.fdi.end());
   for (const int fdi : teeth) {
     if (fdi == 0) continue;

@@ -18,6 +18,7 @@
 #include <algorithm>
 #include <charconv>
 #include <map>
+#include <numeric>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -49,12 +50,17 @@ bool is_mesh_name(const fs::path& path) {
   return endings.contains(lower_case(path.extension().string()));
 }
 
-std::vector<fs::path> crowns_in(const fs::path& folder) {
+std::vector<fs::path> meshes_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() && is_mesh_name(entry.path()) && tooth_in_name(entry.path()))
-      files.push_back(entry.path());
+    if (entry.is_regular_file() && is_mesh_name(entry.path())) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+std::vector<fs::path> crowns_in(const fs::path& folder) {
+  std::vector<fs::path> files = meshes_in(folder);
+  std::erase_if(files, [](const fs::path& path) { return !tooth_in_name(path); });
   if (files.empty())
     throw InputError(folder.string() +
                      " has no crown with its tooth's number in the name of the file, such as crown_36.ply or UR1.stl.");
@@ -63,6 +69,7 @@ std::vector<fs::path> crowns_in(const fs::path& folder) {
 
 ScanInput scan_of_folder(const fs::path& folder) {
   ScanInput input;
+  input.is_folder = true;
   std::map<int, fs::path> seen;
   for (const fs::path& path : crowns_in(folder)) {
     const int fdi = *tooth_in_name(path);
@@ -72,12 +79,23 @@ ScanInput scan_of_folder(const fs::path& folder) {
     const MeshFile crown = load_mesh(path);
     append_mesh(input.file.mesh, crown.mesh);
     input.scan.fdi.resize(input.file.mesh.vertices.size(), fdi);
+    std::vector<int> own = crown.file_vertices;
+    if (own.empty()) {
+      own.resize(crown.mesh.vertices.size());
+      std::iota(own.begin(), own.end(), 0);
+    }
+    input.file.file_vertices.insert(input.file.file_vertices.end(), own.begin(), own.end());
     input.file.coordinates_fit_float = input.file.coordinates_fit_float && crown.coordinates_fit_float;
     for (const std::string& note : crown.notes) input.notes.push_back(fmt::format("Tooth {}: {}", fdi, note));
   }
   input.scan.mesh = input.file.mesh;
   input.notes.insert(input.notes.begin(),
                      fmt::format("{} crowns, their numbers taken from the files' names.", seen.size()));
+  const auto others = meshes_in(folder).size() - seen.size();
+  if (others > 0)
+    input.notes.push_back(
+        fmt::format("{} of the folder's files {} passed over: no name of one tooth alone is in the name.", others,
+                    others == 1 ? "was" : "were"));
   return input;
 }
 
@@ -118,6 +136,30 @@ RawLabels raw_labels(const fs::path& scan, const MeshFile& file, const ScanLabel
       "(--labels FILE.json), an array (--label-array NAME), or what its colours stand for (--palette FILE).");
 }
 
+/// Decides what the numbers mean, and cleans them.
+void set_labels(ScanInput& input, const RawLabels& raw, const ScanLabelSource& source, double millimetres_per_unit) {
+  LabelNumberOptions options;
+  options.forced = source.numbers;
+  options.stated = raw.stated_numbers;
+  options.jaw = source.jaw ? source.jaw : raw.stated_jaw;
+  options.first_is_patients_right = source.first_is_patients_right;
+  input.scan.mesh = input.file.mesh;
+  ScanLabels labels = decide_label_numbers(input.scan.mesh, raw.per_vertex, options);
+  input.notes.push_back(fmt::format("Labels from {}. {}", raw.origin, labels.decided));
+  TriangleMesh in_millimetres = input.scan.mesh;
+  for (Point& p : in_millimetres.vertices) p *= millimetres_per_unit;
+  if (has_size_of_arch(teeth_across(in_millimetres, labels.fdi),
+                       count_teeth(labels.fdi))) {  // else it will be refused for that
+    CleanedLabels cleaned = clean_labels(in_millimetres, labels.fdi);
+    for (LabelChange& change : cleaned.changes) {
+      change.at /= millimetres_per_unit;  // to be found in the scan
+      input.notes.push_back(describe(change));
+    }
+    labels.fdi = std::move(cleaned.fdi);
+  }
+  input.scan.fdi = std::move(labels.fdi);
+}
+
 }  // namespace
 
 ScanInput read_scan(const fs::path& path, const ScanLabelSource& source, double millimetres_per_unit) {
@@ -135,26 +177,12 @@ ScanInput read_scan(const fs::path& path, const ScanLabelSource& source, double 
   });
   input.notes = input.file.notes;
   input.file.notes.clear();
-  RawLabels raw = raw_labels(path, input.file, source);
-  LabelNumberOptions options;
-  options.forced = source.numbers;
-  options.stated = raw.stated_numbers;
-  options.jaw = source.jaw ? source.jaw : raw.stated_jaw;
-  input.scan.mesh = input.file.mesh;
-  ScanLabels labels = decide_label_numbers(input.scan.mesh, raw.per_vertex, options);
-  input.notes.push_back(fmt::format("Labels from {}. {}", raw.origin, labels.decided));
-  TriangleMesh in_millimetres = input.scan.mesh;
-  for (Point& p : in_millimetres.vertices) p *= millimetres_per_unit;
-  if (has_size_of_arch(teeth_across(in_millimetres, labels.fdi),
-                       count_teeth(labels.fdi))) {  // else it will be refused for that
-    CleanedLabels cleaned = clean_labels(in_millimetres, labels.fdi);
-    for (LabelChange& change : cleaned.changes) {
-      change.at /= millimetres_per_unit;  // to be found in the scan
-      input.notes.push_back(describe(change));
-    }
-    labels.fdi = std::move(cleaned.fdi);
+  const RawLabels raw = raw_labels(path, input.file, source);
+  try {
+    set_labels(input, raw, source, millimetres_per_unit);
+  } catch (const InputError& error) {
+    throw in_terms_of_file(error, input.file);
   }
-  input.scan.fdi = std::move(labels.fdi);
   return input;
 }
 

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/float_bits.hpp"
+#include "mesh/append_mesh.hpp"
 #include "program.hpp"
 #include "rhizodont/io.hpp"
 
@@ -7,6 +9,7 @@
 
 #include <fstream>
 #include <string>
+#include <utility>
 
 namespace rhizodont::test {
 namespace {
@@ -26,8 +29,30 @@ class Arch : public Program {
     Point low = crown.mesh.vertices.front(), high = low;
     for (const Point& p : crown.mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
     const Point to = Point(x, 0, 0) - 0.5 * (low + high);
-    for (Point& p : crown.mesh.vertices) p = (p + to).cast<float>().cast<double>();
+    for (Point& p : crown.mesh.vertices) p = nearest_float(p + to);
     save_mesh(folder.path() / "crowns" / name, crown);
+  }
+
+  /// Both crowns in one scan, labelled by a file beside it.
+  void write_scan(const char* name) const {
+    MeshFile scan;
+    nlohmann::json labels{{"id_patient", ""}, {"jaw", "lower"}, {"labels", nlohmann::json::array()}};
+    for (const auto& [file, fdi] : {std::pair("crowns/crown_34.ply", 34), std::pair("crowns/LL6.ply", 36)}) {
+      append_mesh(scan.mesh, load_mesh(folder.path() / file).mesh);
+      while (labels["labels"].size() < scan.mesh.vertices.size()) labels["labels"].push_back(fdi);
+    }
+    labels["instances"] = labels["labels"];
+    save_mesh(folder.path() / name, scan);
+    std::ofstream(fs::path(folder.path() / name).replace_extension(".json")) << labels;
+  }
+
+  void expect_same_teeth(const std::string& first, const std::string& second) const {
+    for (const char* tooth : {"tooth_34.ply", "tooth_36.ply"}) {
+      const TriangleMesh a = load_mesh(folder.path() / first / tooth).mesh,
+                         b = load_mesh(folder.path() / second / tooth).mesh;
+      EXPECT_EQ(a.vertices, b.vertices) << second << " " << tooth;
+      EXPECT_EQ(a.triangles, b.triangles) << second << " " << tooth;
+    }
   }
 
   nlohmann::json json(const std::string& name) const {
@@ -40,7 +65,7 @@ TEST_F(Arch, GivesEveryFileAndTeethThatCheck) {
   ASSERT_EQ(done.code, 0) << done.error << done.out;
   EXPECT_NE(done.out.find("2 of 2 teeth have roots"), std::string::npos) << done.out;
   for (const char* name : {"tooth_34.ply", "tooth_34.json", "crown_34.ply", "tooth_36.ply", "crown_36.ply", "arch.glb",
-                           "arch.ply", "arch.json", "axes.json", "axes.mrk.json", "labels.json"})
+                           "arch.ply", "arch.json", "axes.json", "axes.mrk.json"})
     EXPECT_TRUE(fs::exists(folder.path() / "out" / name)) << name;
   for (const char* fdi : {"34", "36"}) {
     const std::string tooth = std::string("out/tooth_") + fdi, crown = std::string("out/crown_") + fdi + ".ply";
@@ -53,12 +78,27 @@ TEST_F(Arch, GivesEveryFileAndTeethThatCheck) {
   EXPECT_EQ(report["clearances"].size(), 1U);
   EXPECT_EQ(axes["teeth"].size(), 2U);
   EXPECT_EQ(json("out/axes.mrk.json")["markups"].size(), 4U);
-  EXPECT_EQ(json("out/labels.json")["jaw"], "lower");
+  EXPECT_FALSE(fs::exists(folder.path() / "out/labels.json"));  // there is no scan whose vertices they would be of
   const MeshFile all = load_mesh(folder.path() / "out" / "arch.ply");
   for (const char* name : {"fdi", "source", "uncertainty", "clearance"})
     EXPECT_EQ(all.vertex_attributes.at(name).values.size(), all.mesh.vertices.size()) << name;
   // A folder with results is not written over unasked.
   expect_error("arch crowns -o out --e 1", 2, "--overwrite");
+}
+
+TEST_F(Arch, GivesTheSameTeethInEveryDialectOfLabels) {
+  write_scan("scan.ply");
+  const Outcome done = run("arch scan.ply -o out --e 1 --labels-vtp --labels-vtk");
+  ASSERT_EQ(done.code, 0) << done.error << done.out;
+  EXPECT_EQ(json("out/labels.json")["labels"], json("scan.json")["labels"]);
+  EXPECT_EQ(json("out/labels.json")["jaw"], "lower");
+  for (const char* labels : {"out/labels.vtp", "out/labels.vtk"}) {
+    const std::string other = fs::path(labels).extension().string().substr(1);
+    const Outcome again = run(std::string("arch ") + labels + " -o " + other + " --e 1");
+    ASSERT_EQ(again.code, 0) << again.error << again.out;
+    EXPECT_NE(again.out.find(other == "vtk" ? "niversal" : "FDI"), std::string::npos) << again.out;
+    expect_same_teeth("out", other);
+  }
 }
 
 TEST_F(Arch, OneToothWithoutAResultDoesNotStopTheOthers) {
@@ -89,6 +129,20 @@ TEST_F(Arch, WrongUseAndBadInputAreSaidInOneLine) {
   folder.write("list.json", "[1, 2, 3]");
   expect_error("arch crowns/LL6.ply --labels list.json -o out", 3, "list");
   expect_error("arch crowns -o out --unit m", 3, "mm across");
+  // An STL file has no vertices that labels could be of, but where their number tells.
+  write_scan("scan.stl");
+  nlohmann::json fewer = json("scan.json");
+  for (const char* list : {"labels", "instances"}) fewer[list].erase(0);
+  std::ofstream(folder.path() / "scan.json") << fewer;
+  expect_error("arch scan.stl -o out", 3, "STL");
+  folder.write(
+      "scan.dcm",
+      "<?xml version=\"1.0\"?><HPS version=\"1.1\"><Packed_geometry><Schema>CE</Schema></Packed_geometry></HPS>");
+  expect_error("arch scan.dcm -o out", 3, "3Shape");
+  folder.write("slice.dcm", std::string(128, '\0') + "DICM");
+  expect_error("arch slice.dcm -o out", 3, "DICOM");
+  folder.write("empty.json", "");
+  expect_error("arch crowns/LL6.ply --labels empty.json -o out", 3, "empty.json");
   EXPECT_FALSE(fs::exists(folder.path() / "out"));
 }
 
