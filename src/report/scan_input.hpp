@@ -26,7 +26,8 @@ struct ScanLabelSource {
 
 /// A scan with its teeth, as read.
 struct ScanInput {
-  /// Of a folder: all crowns, one after the other, without attributes; `file_vertices` are those of each one's own file.
+  /// Of a folder: all crowns, one after the other, without attributes; `file_vertices` are those of each one's own
+  /// file.
   MeshFile file;
   bool is_folder = false;
   std::string sha256;  ///< of the scan's file as it lies there; empty for a folder
@@ -36,8 +37,9 @@ struct ScanInput {
 
 /// Reads a scan and finds its labels: those that the source names, else the scan's own array, else a Teeth3DS file of
 /// the same name beside it (SCAN.json). A folder holds a crown a file, with the tooth's number in its name: 36, UR1,
-/// id_3 (universal); other files there are passed over, and named. Labels are decided, cleaned, and given as FDI numbers. Throws InputError, its vertices
-/// numbered as in the file, where there are none, or as the readers do; UsageError for more than one source.
+/// id_3 (universal); other files there are passed over, and named. Labels are decided, cleaned, and given as FDI
+/// numbers. Throws InputError, its vertices numbered as in the file, where there are none, or as the readers do;
+/// UsageError for more than one source.
 /// @param millimetres_per_unit  of the scan: what is too small for a tooth is told in mm. The scan keeps its unit
 ScanInput read_scan(const std::filesystem::path& scan, const ScanLabelSource& source = {},
                     double millimetres_per_unit = 1);
