@@ -125,11 +125,11 @@ void measure_roots(SyntheticTooth& tooth, std::size_t roots) {
 }
 
 SyntheticTooth draw_tooth(const ToothFamilies& families, int type, const TemplateLoan& loan,
-                          const ToothVariation& variation, RandomStream& random) {
+                          const ToothVariation& variation, const SharedDraws& shared, RandomStream& random) {
   const int from = loan.from;
   const FamilyTemplate& source = families.templates[static_cast<std::size_t>(from)];
   const ToothDimensions& mean = families.dimensions[static_cast<std::size_t>(type)];
-  const ToothShape shape = draw_shape(source, mean, type, variation, random);
+  const ToothShape shape = draw_shape(source, mean, type, variation, shared, random);
   // Small teeth would be bent out of shape by what large ones bear.
   const double warp = variation.warp_mm * std::clamp((mean.crown_mesiodistal + mean.crown_buccolingual) / 16, 0.7, 1.2);
   const Waves whole(random, 10, 7.0, 20.0, warp);
@@ -175,14 +175,14 @@ void require_type(const ToothFamilies& families, int type) {
 }  // namespace
 
 SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint64_t seed,
-                              const ToothVariation& variation) {
+                              const ToothVariation& variation, const SharedDraws& shared) {
   require_type(families, type);
   RandomStream random(seed, static_cast<std::uint64_t>(type) + 1);
   const TemplateLoan own = own_template(families, type);
   for (int draw = 0; draw < 20; ++draw) {
     const TemplateLoan& loan = choose_template(type, random, families, own);
     const FamilyTemplate& source = families.templates[static_cast<std::size_t>(loan.from)];
-    SyntheticTooth tooth = draw_tooth(families, type, loan, variation, random);
+    SyntheticTooth tooth = draw_tooth(families, type, loan, variation, shared, random);
     if (is_sound(source, tooth)) return tooth;
   }
   throw NoResultError("No sound tooth of type " + std::to_string(type) + " came out of 20 draws.");
@@ -192,7 +192,7 @@ SyntheticTooth mean_tooth(const ToothFamilies& families, int type) {
   require_type(families, type);
   RandomStream unused(0);
   const TemplateLoan own = own_template(families, type);
-  return draw_tooth(families, type, own, no_variation(), unused);
+  return draw_tooth(families, type, own, no_variation(), {}, unused);
 }
 
 }  // namespace rhizodont

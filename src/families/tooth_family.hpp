@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 namespace rhizodont {
@@ -151,11 +152,18 @@ struct SyntheticTooth {
   double furcation_z = 0;                  ///< highest branching, height; 0 for a single root
 };
 
+/// Standard normal numbers that a tooth takes instead of drawing its own, for what it shares with others (person.hpp).
+struct SharedDraws {
+  std::optional<double> size;            ///< of the crown, beside the type's mean
+  std::optional<double> root_length;     ///< beside what goes with size
+  std::optional<double> root_thickness;  ///< half of the variance of the root's widths along x and y
+};
+
 /// Draws tooth number `seed` of a type (0..15). Depends on the arguments alone. A draw that folds, turns over or lets
 /// triangles run into each other is rejected and drawn again from the same seed's stream.
 /// Throws UsageError for a bad type or one that was not loaded, NoResultError after 20 rejected draws.
 SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint64_t seed,
-                              const ToothVariation& variation = {});
+                              const ToothVariation& variation = {}, const SharedDraws& shared = {});
 
 /// The tooth of a type (0..15) without any variation: its own template at mean dimensions. Throws as generate_tooth.
 SyntheticTooth mean_tooth(const ToothFamilies& families, int type);

@@ -132,12 +132,13 @@ double HeightMap::operator()(double h) const {
 }
 
 ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean, int type,
-                      const ToothVariation& variation, RandomStream& random) {
+                      const ToothVariation& variation, const SharedDraws& shared, RandomStream& random) {
   // Against the table: scanned crowns (means of the statistical crown models of about 95 people) are a little larger,
   // roots of living populations a little shorter.
   constexpr double crown_population = 1.02, root_population = 0.98;
   ToothShape shape;
-  const double size = random.normal(1.0, variation.size, 2.8);
+  const double own_size = random.normal(1.0, variation.size, 2.8);
+  const double size = shared.size ? 1 + variation.size * std::clamp(*shared.size, -2.8, 2.8) : own_size;
   const auto proportion = [&] { return random.normal(1.0, variation.proportion); };
   shape.scale.x() = crown_population * size * proportion() * mean.crown_mesiodistal / source.crown_width.x();
   shape.scale.y() = crown_population * size * proportion() * mean.crown_buccolingual / source.crown_width.y();
@@ -161,7 +162,8 @@ ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean,
     shape.roots.push_back(draw_root(source, root, centre, spread, branching.fused, variation, random));
 
   double length = root_population * mean.root_length * std::pow(size, variation.root_size_correlation) + below;
-  length += random.normal(0.0, variation.root_length_mm);
+  const double own_length = random.normal(0.0, variation.root_length_mm);
+  length += shared.root_length ? variation.root_length_mm * std::clamp(*shared.root_length, -2.8, 2.8) : own_length;
   if (deciduous) {  // squat crowns, slender short roots
     const double small = random.uniform(0.68, 0.9);
     shape.scale = shape.scale.cwiseProduct(Eigen::Vector3d(small, small, small * random.uniform(0.75, 0.9)));
@@ -181,6 +183,10 @@ ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean,
   }
   fit_root_length(shape.height, source.root_length, length);
   shape.root_section = {random.normal(1.0, variation.root_thickness), random.normal(1.0, variation.root_thickness)};
+  if (shared.root_thickness)
+    for (double& width : shape.root_section)
+      width =
+          1 + std::sqrt(0.5) * (width - 1 + variation.root_thickness * std::clamp(*shared.root_thickness, -2.3, 2.3));
   draw_bends(shape, type, length, variation, random);
   shape.lean -= (1 - variation.template_lean) * centre.cwiseProduct(shape.scale.head<2>());
   return shape;

@@ -41,7 +41,7 @@ struct ToothShape {
 
 /// Draws a shape of a type on a template. Depends on the arguments alone.
 ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean, int type,
-                      const ToothVariation& variation, RandomStream& random);
+                      const ToothVariation& variation, const SharedDraws& shared, RandomStream& random);
 
 /// Position of a template vertex, which may have been moved by a crown model, in the drawn shape.
 /// @param root  root that the vertex belongs to below its branching, else -1

@@ -6,6 +6,7 @@
 #include "completion/registration.hpp"
 #include "families/crown_crop.hpp"
 #include "families/mean_teeth.hpp"
+#include "families/person.hpp"
 #include "families/template_families.hpp"
 #include "families/tooth_family.hpp"
 #include "mesh/diagnosis.hpp"
@@ -55,6 +56,42 @@ void expect_roots_of_type(const ToothFamilies& families) {
     }
     EXPECT_NEAR(sum, 0, 0.4) << "type " << type;
   }
+}
+
+/// Correlation of two lists of numbers.
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+  const Eigen::Map<const Eigen::ArrayXd> x(a.data(), static_cast<Eigen::Index>(a.size())),
+      y(b.data(), static_cast<Eigen::Index>(b.size()));
+  const Eigen::ArrayXd u = x - x.mean(), v = y - y.mean();
+  return (u * v).sum() / std::sqrt((u * u).sum() * (v * v).sum());
+}
+
+TEST_F(Families, teethOfOnePersonGoTogether) {
+  const ToothFamilies& families = all_families();
+  ToothVariation plain;  // nothing that shortens roots at random
+  plain.open_apex_share = plain.resorption_share = plain.deciduous_share = plain.blunt_share = 0;
+  constexpr std::size_t people = 60;
+  std::vector<double> of_21(people), of_11(people), of_31(people), width_21(people), width_11(people);
+  tbb::parallel_for(std::size_t{0}, people, [&](std::size_t i) {
+    const PersonDraw person = draw_person(i);
+    const auto width = [](const SyntheticTooth& t) { return bounding_box(t.mesh.vertices).sizes().x(); };
+    const SyntheticTooth left = generate_tooth_of_person(families, 21, person, plain),
+                         right = generate_tooth_of_person(families, 11, person, plain);
+    of_21[i] = left.root_length, of_11[i] = right.root_length;
+    width_21[i] = width(left), width_11[i] = width(right);
+    of_31[i] = generate_tooth_of_person(families, 31, person, plain).root_length;
+  });
+  EXPECT_GT(correlation(of_21, of_11), 0.75);
+  EXPECT_LT(correlation(of_21, of_11), 0.97);
+  EXPECT_GT(correlation(of_21, of_31), 0.1);
+  EXPECT_LT(correlation(of_21, of_31), 0.7);
+  EXPECT_GT(correlation(width_21, width_11), 0.8);
+}
+
+TEST_F(Families, sharesOfAPersonMustAddUp) {
+  PersonVariation persons;
+  persons.size = {0.7, 0.4};
+  EXPECT_THROW(generate_tooth_of_person(all_families(), 21, draw_person(1), {}, persons), UsageError);
 }
 
 TEST_F(Families, sameSeedSameToothOnAnyThread) {
