@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What one measured root tells of a person's other roots: bench_people DATA [COUNT]. Crowns of generated people (28
-// teeth each, families/person.hpp) are completed one by one; then the length of one root is taken as measured and the
-// others' expectations are conditioned on it (arch/person_lengths.hpp).
+// What one measured root tells of a person's other roots: bench_people DATA [COUNT [LENGTHS.csv]]. Crowns of generated
+// people (28 teeth each, families/person.hpp) are completed one by one; then the length of one root is taken as
+// measured and the others' expectations are conditioned on it (arch/person_lengths.hpp). All lengths go to LENGTHS.csv.
 #include "arch/person_lengths.hpp"
 #include "base/random_stream.hpp"
 #include "families/crown_crop.hpp"
@@ -19,6 +19,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 #include <map>
 #include <optional>
 #include <vector>
@@ -70,6 +71,15 @@ std::vector<Person> people(const ToothFamilies& families, const CompletionModels
   return all;
 }
 
+void write_lengths(const std::vector<Person>& all, const char* path) {
+  std::ofstream file(path);
+  file << "person,tooth,expected_mm,deviation_mm,true_mm\n";
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (const auto& [fdi, length] : all[i])
+      file << fmt::format("{},{},{:.4f},{:.4f},{:.4f}\n", i, fdi, length.expected.mm, length.expected.deviation_mm,
+                          length.truth);
+}
+
 struct MeanError {
   double sum = 0;
   int count = 0;
@@ -100,12 +110,13 @@ void print_row(const std::vector<Person>& all, const std::vector<int>& measured)
 
 int main(int count, char** words) {
   if (count < 2) {
-    fmt::print(stderr, "usage: bench_people DATA [COUNT]\n");
+    fmt::print(stderr, "usage: bench_people DATA [COUNT [LENGTHS.csv]]\n");
     return 2;
   }
   const std::size_t number = count > 2 ? std::strtoul(words[2], nullptr, 10) : 20;
   const std::vector<Person> all =
       people(load_tooth_families(words[1]), CompletionModels::load(default_models_folder()), number);
+  if (count > 3) write_lengths(all, words[3]);
   std::size_t teeth = 0;
   for (const Person& person : all) teeth += person.size();
   fmt::print(
