@@ -4,19 +4,18 @@
 #include "command_line/words.hpp"
 #include "commands.hpp"
 #include "complete_jobs.hpp"
-#include "io/cursors.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/output_files.hpp"
 #include "rhizodont/report.hpp"
 #include "rhizodont/tooth_file.hpp"
+#include "skirt_option.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -76,17 +75,6 @@ void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::strin
     fmt::print(out, "  repaired: {} ({} vertices, {} triangles)\n", action_text(step), step.vertices.size(),
                step.triangles.size());
   for (const std::string& warning : all_warnings(r)) fmt::print(out, "  note: {}\n", warning);
-}
-
-/// keep, auto, or the confidence from which a vertex is tooth.
-std::optional<double> skirt_threshold(const std::string& text) {
-  if (same_word(text, "keep")) return std::nullopt;
-  if (same_word(text, "auto")) return 0.5;
-  double value = 0;
-  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failure != std::errc() || end != text.data() + text.size() || !(value > 0 && value < 1))
-    throw UsageError("--skirt takes keep, auto, or a confidence between 0 and 1.");
-  return value;
 }
 
 /// The input with what the skirt network thinks of its vertices.
