@@ -11,6 +11,7 @@ namespace rhizodont::command_line {
 // `exit_with(code)` where everything to be said has been printed.
 
 void add_arch_command(CLI::App& app);
+void add_batch_command(CLI::App& app);
 void add_complete_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_check_command(CLI::App& app);
