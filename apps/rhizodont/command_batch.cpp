@@ -186,6 +186,10 @@ void add_completion_options(CLI::App& batch, const std::shared_ptr<BatchCommand>
   batch.add_flag("--resolve-collisions", cases.arch.resolve_collisions,
                  "Of arches: turn, bend or shorten roots that come too near to other teeth, by the least change");
   batch.add_option("--clearance", cases.arch.clearance_mm, "What they are to keep, mm, 0 to 3")->capture_default_str();
+  batch.add_flag("--labels-vtp", cases.labels_vtp,
+                 "Of arches: write the labels as labels.vtp, too (cells, FDI numbers)");
+  batch.add_flag("--labels-vtk", cases.labels_vtk,
+                 "Of arches: write the labels as labels.vtk, too (points, Universal_ID, 33 is gum)");
   batch
       .add_option("--skirt", command->skirt,
                   "Gum and webs around single crowns: keep, auto (drop), or drop below this CONFIDENCE of being tooth")

@@ -47,6 +47,8 @@ Json options_json(const CaseOptions& options, bool is_crown) {
   if (!is_crown) {
     json["resolve_collisions"] = options.arch.resolve_collisions;
     json["clearance_mm"] = options.arch.clearance_mm;
+    json["labels_vtp"] = options.labels_vtp;
+    json["labels_vtk"] = options.labels_vtk;
   }
   return json;
 }
@@ -62,6 +64,7 @@ Json line_json(const BatchCase& one) {
           {"has_palette", !labels.palette.empty()},
           {"label_array", labels.array},
           {"labels_are", labels.numbers ? Json(label_numbers_name(*labels.numbers)) : Json(nullptr)},
+          {"first_is_patients_right", value_or_null(labels.first_is_patients_right)},
           {"jaw", labels.jaw ? Json(jaw_name(*labels.jaw)) : Json(nullptr)}};
 }
 

@@ -18,7 +18,8 @@ struct CaseOptions {
   ArchOptions arch;       ///< of scans; the unit, lengths and threads are a case's or the batch's to say
   CompleteOptions crown;  ///< of single crowns, likewise
   std::string tooth_format = "ply";
-  bool keep_names = false;  ///< names of files may stand in results and in what is said
+  bool labels_vtp = false, labels_vtk = false;  ///< of arches also the labels in these forms
+  bool keep_names = false;                      ///< names of files may stand in results and in what is said
 };
 
 /// The files of a folder with models, and what they are: goes into every key.

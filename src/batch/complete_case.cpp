@@ -67,6 +67,8 @@ BatchOutcome complete_scan(const BatchCase& one, const CaseKey& key, const Compl
   require_same(input.sha256, key);
   for (std::string& note : input.notes) note = worded(note);
   CompletedArch arch = complete_arch(input.scan, models, arch_options, [&](int, int, int) { go_on(); });
+  const ArchFileOptions files{options.tooth_format, shown_name(one, options), options.labels_vtp, options.labels_vtk};
+  refuse_what_no_file_holds(arch, files);
   BatchOutcome outcome;
   for (ToothOfArch& tooth : arch.teeth) {
     if (!tooth.tooth) {
@@ -76,7 +78,7 @@ BatchOutcome complete_scan(const BatchCase& one, const CaseKey& key, const Compl
     tooth.tooth->record.stages.clear();
     outcome.teeth.push_back(outcome_of(tooth.fdi, tooth.tooth->record, options.tooth_format));
   }
-  outcome.files = arch_files(input, arch, arch_options, {options.tooth_format, shown_name(one, options)}, {});
+  outcome.files = arch_files(input, arch, arch_options, files, {});
   const std::size_t rooted = outcome.rooted();
   if (rooted == outcome.teeth.size()) return outcome;
   outcome.code = static_cast<int>(rooted == 0 ? ErrorCode::no_result : ErrorCode::partial);

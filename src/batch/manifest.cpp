@@ -23,8 +23,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 10> known_columns{"scan", "labels", "label_array",  "palette", "labels_are",
-                                                         "jaw",  "fdi",    "root_lengths", "unit",    "id"};
+constexpr std::array<std::string_view, 11> known_columns{"scan",         "labels", "label_array", "palette",
+                                                         "labels_are",   "jaw",    "first_label", "fdi",
+                                                         "root_lengths", "unit",   "id"};
 
 /// A sentence for each line at fault.
 class Faults {
@@ -138,7 +139,7 @@ class CaseReader {
     if (!case_.fdi && number != "?")
       fault("fdi", "it takes a tooth's number, 11 to 48 or 51 to 85, or ? for a crown whose number is not known");
     if (!case_.labels.labels.empty() || !case_.labels.palette.empty() || !case_.labels.array.empty() ||
-        !cell("labels_are").empty() || !cell("jaw").empty())
+        !cell("labels_are").empty() || !cell("jaw").empty() || !cell("first_label").empty())
       fault("fdi", "with a number this is a single crown, which has no labels");
   }
 
@@ -179,6 +180,10 @@ class CaseReader {
       case_.labels.jaw = word == "upper" ? Jaw::upper : Jaw::lower;
     else if (!word.empty())
       fault("jaw", "it takes upper or lower");
+    if (const std::string word = lower_case(cell("first_label")); word == "right" || word == "left")
+      case_.labels.first_is_patients_right = word == "right";
+    else if (!word.empty())
+      fault("first_label", "it takes right or left");
     if (const std::string word = cell("unit"); !word.empty()) try {
         case_.millimetres_per_unit = millimetres_per_unit(word);
       } catch (const UsageError&) {

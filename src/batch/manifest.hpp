@@ -36,7 +36,8 @@ struct BatchManifest {
 };
 
 /// Reads a table whose first line names its columns, separated by commas, semicolons or tabs (what the first line
-/// holds). `scan` must be there; `labels`, `label_array`, `palette`, `labels_are`, `jaw`, `fdi`, `root_lengths`
+/// holds). `scan` must be there; `labels`, `label_array`, `palette`, `labels_are`, `jaw`, `first_label`, `fdi`,
+/// `root_lengths`
 /// ("36=14.2 11=13.0"; of a crown also "14.2"), `unit` and `id` may be; cells may be empty. A case with `fdi` (a
 /// number, or ? for one that is not known) is a single crown. Relative paths are taken from `folder`. Throws InputError
 /// that names every faulty line with its column and quotes no cell: cells tell of patients.

@@ -107,6 +107,7 @@ TEST(Manifest, SaysWhatIsWrongOnWhichLine) {
   expect_fault("scan,labels,palette\na,b,c\n", {"Line 2: labels come from one place"});
   expect_fault("scan,labels_are\na,roman\n", {"Line 2, column labels_are"});
   expect_fault("scan,jaw\na,left\n", {"Line 2, column jaw"});
+  expect_fault("scan,first_label\na,up\n", {"Line 2, column first_label"});
   expect_fault("scan,unit\na,mile\n", {"Line 2, column unit"});
   expect_fault("scan,root_lengths\na,14\n", {"Line 2, column root_lengths", "36=14.2"});
   expect_fault("scan,root_lengths\na,36=14 36=15\n", {"Line 2, column root_lengths", "two lengths"});
