@@ -10,6 +10,7 @@
 #include "evaluation/root_figures.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/mean_point.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "mesh/principal_axis.hpp"
 #include "mesh/sampling.hpp"
@@ -32,15 +33,9 @@ namespace {
 
 constexpr double crown_share_of_unlabelled = 0.4;
 
-Point mean_of(const std::vector<Point>& points) {
-  Point sum = Point::Zero();
-  for (const Point& p : points) sum += p;
-  return sum / static_cast<double>(points.size());
-}
-
 /// Mean squared distance from the mean.
 double spread(const std::vector<Point>& points) {
-  const Point mean = mean_of(points);
+  const Point mean = mean_point(points);
   double sum = 0;
   for (const Point& p : points) sum += (p - mean).squaredNorm();
   return sum / static_cast<double>(points.size());
@@ -48,7 +43,7 @@ double spread(const std::vector<Point>& points) {
 
 /// The long axis with its wider end up.
 Eigen::Vector3d axis_to_wider_end(const std::vector<Point>& points) {
-  const Point mean = mean_of(points);
+  const Point mean = mean_point(points);
   const Eigen::Vector3d axis = principal_axis(points);
   // The third moment of width: positive where what lies above the middle is the wider part.
   double lean = 0;
@@ -162,7 +157,8 @@ Fit fit_from(const Registration& r, const Eigen::Matrix3d& rotation) {
   Fit fit;
   fit.scale = std::sqrt(spread(r.target.points()) / spread(r.source.points()));
   fit.similarity.linear() = fit.scale * rotation;
-  fit.similarity.translation() = mean_of(r.target.points()) - fit.similarity.linear() * mean_of(r.source.points());
+  fit.similarity.translation() =
+      mean_point(r.target.points()) - fit.similarity.linear() * mean_point(r.source.points());
   for (int i = 0; i < r.options.iterations; ++i)
     improve(find_pairs(r, fit.similarity, fit.scale), r.options.largest_scale_step, fit);
   fit.mean_distance = find_pairs(r, fit.similarity, fit.scale).mean_distance;

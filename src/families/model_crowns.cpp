@@ -8,6 +8,7 @@
 #include "families/arch_directions.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/mean_point.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
 
@@ -113,14 +114,8 @@ void settle(SyntheticTooth& crown) {
   crown.crown_height = bounding_box(crown.mesh.vertices).max().z();
 }
 
-Point middle_of(const std::vector<Point>& points) {
-  Point sum = Point::Zero();
-  for (const Point& p : points) sum += p;
-  return sum / static_cast<double>(points.size());
-}
-
 ModelCrown model_crown(const CrownShapeModel& model, int type, const Eigen::Vector3d& buccal) {
-  const Point middle = middle_of(model.mean);
+  const Point middle = mean_point(model.mean);
   ModelCrown crown;
   std::vector<Point> points;
   for (const Point& p : model.mean) points.emplace_back(p - middle);
@@ -155,7 +150,7 @@ std::vector<ModelCrown> load_model_crowns(const std::filesystem::path& folder) {
     std::vector<Eigen::Vector3d> arch;  // of the same jaw and side, from the front to the back
     const std::size_t jaw = i / (2 * teeth_of_jaw);
     for (std::size_t k = 0; k < teeth_of_jaw; ++k)
-      arch.push_back(middle_of(models[2 * (jaw * teeth_of_jaw + k) + i % 2].mean));
+      arch.push_back(mean_point(models[2 * (jaw * teeth_of_jaw + k) + i % 2].mean));
     crowns[i] = model_crown(models[i], type_of(i), buccal_direction(arch, (i / 2) % teeth_of_jaw));
   });
   return crowns;
