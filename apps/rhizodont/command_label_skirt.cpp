@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace rhizodont::command_line {
 namespace {
@@ -26,11 +27,7 @@ void run(const LabelSkirtCommand& command) {
   MeshFile crown = load_mesh(command.crown);
   const MeshFile restored = load_mesh(command.restored);
   const std::vector<std::uint8_t> labels = label_by_restored(crown.mesh, restored.mesh, command.tolerance_mm);
-  VertexAttribute attribute{AttributeType::uint8, {labels.begin(), labels.end()}};
-  crown.vertex_attributes["tooth"] = std::move(attribute);
-  crown.triangle_attributes.clear();  // what else the scan's triangles carry is no label of the crown
-  crown.comments = {"tooth: 1 on the restored tooth's surface, 0 skirt"};
-  save_mesh(command.output, crown);
+  save_mesh(command.output, labelled_crown_file(std::move(crown), labels));
   const auto tooth = std::count(labels.begin(), labels.end(), 1);
   fmt::print("{}: {} of {} vertices are tooth, {} skirt\n", command.output, tooth, labels.size(),
              static_cast<std::ptrdiff_t>(labels.size()) - tooth);

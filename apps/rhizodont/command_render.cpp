@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/output_checks.hpp"
 #include "commands.hpp"
-#include "mesh/geometry.hpp"
 #include "pictures/render.hpp"
+#include "pictures/upward.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
@@ -35,20 +35,6 @@ std::vector<Colour> colours_of(const MeshFile& file, const std::string& colour_b
                                   : colours_by_value(file.mesh, place->second.values);
 }
 
-// From root to crown: the area vector of an open crown, or of the scanned part of a completed tooth.
-Eigen::Vector3d growth_axis(const MeshFile& file) {
-  TriangleMesh crown = file.mesh;
-  const auto source = file.vertex_attributes.find(source_attribute);
-  if (source != file.vertex_attributes.end())
-    std::erase_if(crown.triangles, [&](const Triangle& triangle) {
-      return std::any_of(triangle.begin(), triangle.end(),
-                         [&](std::int32_t v) { return source->second.values[static_cast<std::size_t>(v)] != 0; });
-    });
-  const Eigen::Vector3d sum = area_vector(crown);
-  // closed meshes have none: then the file's z axis
-  return sum.norm() > 1e-3 * surface_area(file.mesh) ? sum.normalized() : Eigen::Vector3d::UnitZ();
-}
-
 void run(const RenderCommand& command) {
   require_ending(command.output, {".png"}, "a picture");
   require_safe_outputs({command.meshes.begin(), command.meshes.end()}, {command.output});
@@ -56,7 +42,7 @@ void run(const RenderCommand& command) {
   for (const std::string& path : command.meshes) files.push_back(load_mesh(path));
   std::vector<RenderItem> items;
   for (std::size_t k = 0; k < files.size(); ++k) {
-    RenderItem item{&files[k].mesh, colours_of(files[k], command.colour_by, command.meshes[k]), growth_axis(files[k])};
+    RenderItem item{&files[k].mesh, colours_of(files[k], command.colour_by, command.meshes[k]), upward_of(files[k])};
     if (command.axis.size() == 3) item.up = Eigen::Vector3d(command.axis[0], command.axis[1], command.axis[2]);
     items.push_back(std::move(item));
   }

@@ -1,14 +1,14 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base/float_bits.hpp"
 #include "command_line/output_checks.hpp"
 #include "commands.hpp"
 #include "families/crown_crop.hpp"
 #include "families/mean_arch.hpp"
 #include "families/mean_teeth.hpp"
-#include "families/scanner_mesh.hpp"
+#include "families/synthetic_files.hpp"
 #include "families/tooth_family.hpp"
 #include "pictures/render.hpp"
+#include "pictures/tiles.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "teeth/fdi.hpp"
@@ -41,46 +41,10 @@ struct SynthCommand {
   double noise_mm = 0.005;
 };
 
-// Generated teeth are left ones.
-TriangleMesh mirrored(TriangleMesh mesh) {
-  for (Point& p : mesh.vertices) p.x() = -p.x();
-  for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
-
-MeshFile tooth_file(const SyntheticTooth& tooth, const GumLine& line, bool right_side) {
-  MeshFile file;
-  file.mesh = right_side ? mirrored(tooth.mesh) : tooth.mesh;
-  for (Point& p : file.mesh.vertices) p = nearest_float(p);
-  VertexAttribute source{AttributeType::uint8, {}}, enamel{AttributeType::uint8, {}};
-  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v) {
-    const Point& p = tooth.mesh.vertices[v];
-    const bool seen = p.z() > line.height(tooth.junction, p.x(), p.y());
-    source.values.push_back(static_cast<double>(seen ? VertexSource::scan : VertexSource::predicted));
-    enamel.values.push_back(tooth.crown[v]);
-  }
-  file.vertex_attributes[source_attribute] = std::move(source);
-  file.vertex_attributes["crown"] = std::move(enamel);
-  file.comments = {"synthetic tooth, made by rhizodont synth",
-                   "derived from Permanent Teeth, University of Dundee School of Dentistry "
-                   "(E. McDougall, A. Mason, M. Roughley), CC BY 4.0",
-                   fmt::format("root length {:.2f} mm, crown height {:.2f} mm", tooth.root_length, tooth.crown_height)};
-  return file;
-}
-
 CroppedCrown crop(const SynthCommand& command, const SyntheticTooth& tooth, std::uint64_t seed) {
   RandomStream random(seed, 200);
   if (!command.clean_cut) return draw_cropped_crown(tooth, 0, 0.3, random);
-  GumLine line;  // as a technician trims: the junction's own curve, a little above
-  line.junction_share = 0.8;
-  line.offset_mm = 0.4;
-  for (std::size_t k = 1; k < line.wave_mm.size(); ++k) {
-    line.wave_mm[k] = random.normal(0.0, 0.08);
-    line.wave_phase[k] = random.uniform(0, 6.28);
-  }
-  auto crown = crop_crown(tooth, line);
-  if (!crown) throw NoResultError("This tooth's crown does not come off in one piece.");
-  return {std::move(*crown), line};
+  return trim_clean(tooth, random);
 }
 
 void write_atlas(const SynthCommand& command, const ToothFamilies& families) {
@@ -145,15 +109,11 @@ void write_tooth(const SynthCommand& command, const ToothFamilies& families, int
   const bool right_side = is_right_side(fdi);
   const SyntheticTooth tooth = generate_tooth(families, tooth_type_of_fdi(fdi), seed);
   const CroppedCrown cropped = crop(command, tooth, seed);
-  const MeshFile file = tooth_file(tooth, cropped.line, right_side);
+  const MeshFile file = synthetic_tooth_file(tooth, cropped.line, right_side);
   const auto tooth_name = file_name(command, "tooth", fdi, seed);
   std::vector<OutputFile> files{{tooth_name, mesh_file_bytes(tooth_name, file)}};
   if (command.crowns) {
-    MeshFile crown;
-    crown.mesh = right_side ? mirrored(cropped.mesh) : cropped.mesh;
-    if (command.edge_mm > 0) crown.mesh = scanner_mesh(crown.mesh, command.edge_mm, command.noise_mm, seed);
-    for (Point& p : crown.mesh.vertices) p = nearest_float(p);
-    crown.comments = file.comments;
+    const MeshFile crown = synthetic_crown_file(tooth, cropped, right_side, {command.edge_mm, command.noise_mm, seed});
     const auto crown_name = file_name(command, "crown", fdi, seed);
     files.push_back({crown_name, mesh_file_bytes(crown_name, crown)});
     drawing.meshes.push_back(crown.mesh);
@@ -182,22 +142,6 @@ void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
   write_output_files({{command.sheet, encode_png(render(items, options))}});
 }
 
-// Tiles of a picture whose rows are teeth and whose columns are views, set side by side: `per_row` teeth to a row.
-Image side_by_side(const Image& tall, std::size_t teeth, std::size_t per_row) {
-  const std::size_t height = static_cast<std::size_t>(tall.height) / teeth;
-  const std::size_t bytes = 3 * static_cast<std::size_t>(tall.width), rows = (teeth + per_row - 1) / per_row;
-  Image wide;
-  wide.width = tall.width * static_cast<int>(per_row);
-  wide.height = static_cast<int>(height * rows);
-  wide.rgb.assign(bytes * per_row * height * rows, 255);
-  for (std::size_t i = 0; i < teeth; ++i)
-    for (std::size_t y = 0; y < height; ++y)
-      std::copy_n(tall.rgb.begin() + static_cast<std::ptrdiff_t>((i * height + y) * bytes), bytes,
-                  wide.rgb.begin() +
-                      static_cast<std::ptrdiff_t>((((i / per_row) * height + y) * per_row + i % per_row) * bytes));
-  return wide;
-}
-
 /// `count` teeth of every type (or of one), a row for each type, from the cheek's side, from the side and from above.
 void write_contact_sheet(const SynthCommand& command, const ToothFamilies& families) {
   const auto count = static_cast<std::size_t>(command.count);
@@ -208,7 +152,7 @@ void write_contact_sheet(const SynthCommand& command, const ToothFamilies& famil
   for (int type : types) {
     for (std::size_t i = 0; i < count; ++i) {
       const SyntheticTooth tooth = generate_tooth(families, type, command.seed + i);
-      teeth.push_back(tooth_file(tooth, crop(command, tooth, command.seed + i).line, false));
+      teeth.push_back(synthetic_tooth_file(tooth, crop(command, tooth, command.seed + i).line, false));
     }
   }
   RenderOptions options;
@@ -232,12 +176,8 @@ void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
       options.type = tooth_type_of_fdi(fdi);
       if (command.edge_mm > 0) options.finest_edge_mm = options.coarsest_edge_mm = command.edge_mm;
       const SkirtSample sample = make_skirt_sample(families, seed, options);
-      MeshFile file;
-      file.mesh = sample.mesh;
-      file.vertex_attributes["tooth"] = {AttributeType::uint8, {sample.is_tooth.begin(), sample.is_tooth.end()}};
-      file.comments = {"tooth: 1 on the tooth's surface, 0 skirt; made by rhizodont synth"};
       const auto name = file_name(command, "skirt", fdi, seed);
-      save_mesh(name, file);
+      save_mesh(name, skirt_sample_file(sample));
       fmt::print("{}: {} vertices, {} skirt\n", name.string(), sample.is_tooth.size(),
                  std::count(sample.is_tooth.begin(), sample.is_tooth.end(), 0));
     }

@@ -208,6 +208,19 @@ CroppedCrown draw_cropped_crown(const SyntheticTooth& tooth, double paper_share,
   throw NoResultError("No gum line left a crown in one piece with one border.");
 }
 
+CroppedCrown trim_clean(const SyntheticTooth& tooth, RandomStream& random) {
+  GumLine line;
+  line.junction_share = 0.8;
+  line.offset_mm = 0.4;
+  for (std::size_t k = 1; k < line.wave_mm.size(); ++k) {
+    line.wave_mm[k] = random.normal(0.0, 0.08);
+    line.wave_phase[k] = random.uniform(0, 6.28);
+  }
+  auto crown = crop_crown(tooth, line);
+  if (!crown) throw NoResultError("This tooth's crown does not come off in one piece.");
+  return {std::move(*crown), line};
+}
+
 void add_skirt_remains(TriangleMesh& crown, double width_mm, RandomStream& random) {
   // Directed border edges: from each vertex to the next.
   std::unordered_map<std::uint64_t, int> uses;

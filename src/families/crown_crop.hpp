@@ -47,6 +47,10 @@ struct CroppedCrown {
 CroppedCrown draw_cropped_crown(const SyntheticTooth& tooth, double paper_share, double gap_probability,
                                 RandomStream& random);
 
+/// A crown as a technician trims it: along the junction's own curve, a little above. Throws NoResultError if it does
+/// not come off in one piece.
+CroppedCrown trim_clean(const SyntheticTooth& tooth, RandomStream& random);
+
 /// Adds what a careless cut leaves of the gum: one to three flaps along the border, up to `width_mm` wide, that turn
 /// outwards or hang down. The crown's own triangles stay first and unchanged. @param crown a disc
 void add_skirt_remains(TriangleMesh& crown, double width_mm, RandomStream& random);

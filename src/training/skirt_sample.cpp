@@ -266,4 +266,19 @@ std::vector<std::uint8_t> label_by_restored(const TriangleMesh& crown, const Tri
   return labels;
 }
 
+MeshFile skirt_sample_file(const SkirtSample& sample) {
+  MeshFile file;
+  file.mesh = sample.mesh;
+  file.vertex_attributes["tooth"] = {AttributeType::uint8, {sample.is_tooth.begin(), sample.is_tooth.end()}};
+  file.comments = {"tooth: 1 on the tooth's surface, 0 skirt; made by rhizodont synth"};
+  return file;
+}
+
+MeshFile labelled_crown_file(MeshFile crown, const std::vector<std::uint8_t>& is_tooth) {
+  crown.vertex_attributes["tooth"] = {AttributeType::uint8, {is_tooth.begin(), is_tooth.end()}};
+  crown.triangle_attributes.clear();  // what else the scan's triangles carry is no label of the crown
+  crown.comments = {"tooth: 1 on the restored tooth's surface, 0 skirt"};
+  return crown;
+}
+
 }  // namespace rhizodont

@@ -4,6 +4,7 @@
 
 #include "families/tooth_family.hpp"
 #include "networks/surface_sample.hpp"
+#include "rhizodont/io.hpp"
 #include "rhizodont/mesh.hpp"
 
 #include <cstdint>
@@ -47,5 +48,12 @@ SurfaceSample make_skirt_training_sample(const ToothFamilies& families, std::uin
 /// surface, else skirt. Throws UsageError for another tolerance, InputError if the restored tooth has no area.
 std::vector<std::uint8_t> label_by_restored(const TriangleMesh& crown, const TriangleMesh& restored,
                                             double tolerance_mm = 0.05);
+
+/// A sample as a file; the vertex attribute `tooth` is its label.
+MeshFile skirt_sample_file(const SkirtSample& sample);
+
+/// A crown with the vertex attribute `tooth`, 1 tooth and 0 skirt; what its triangles carry is left out. `is_tooth`: a
+/// number for each vertex, as of `label_by_restored`.
+MeshFile labelled_crown_file(MeshFile crown, const std::vector<std::uint8_t>& is_tooth);
 
 }  // namespace rhizodont

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pictures/render.hpp"
+#include "pictures/tiles.hpp"
+#include "pictures/upward.hpp"
 
 #include "mesh/test_meshes.hpp"
 #include "rhizodont/error.hpp"
@@ -180,6 +182,33 @@ TEST(Render, BadInputIsRefused) {
   RenderOptions huge = small();
   huge.width = 100000;
   EXPECT_THROW(render({{&ball, {red}, {}}}, huge), UsageError);
+}
+
+TEST(Tiles, RowsStandSideBySideAndTheRestIsWhite) {
+  const Image tall{1, 6, {1, 1, 1, 2, 2, 2, 3, 3, 3, 4, 4, 4, 5, 5, 5, 6, 6, 6}};  // three rows of two pixels
+  const Image wide = side_by_side(tall, 3, 2);
+  EXPECT_EQ(wide.width, 2);
+  EXPECT_EQ(wide.height, 4);
+  std::vector<int> first;  // of each pixel's three
+  for (std::size_t i = 0; i < wide.rgb.size(); i += 3) first.push_back(wide.rgb[i]);
+  EXPECT_EQ(first, (std::vector<int>{1, 3, 2, 4, 5, 255, 6, 255}));
+}
+
+TEST(Upward, IsFromRootToCrown) {
+  const Eigen::Vector3d leaning = Eigen::Vector3d(0, 1, 1).normalized();
+  MeshFile file;
+  file.mesh = sphere(2);
+  EXPECT_EQ(upward_of(file), Eigen::Vector3d::UnitZ()) << "closed";
+  VertexAttribute source{AttributeType::uint8, {}};
+  for (const Point& p : file.mesh.vertices) source.values.push_back(p.dot(leaning) > 0.05 ? 0 : 2);
+  file.vertex_attributes[source_attribute] = source;
+  EXPECT_GT(upward_of(file).dot(leaning), 0.99);
+  file.vertex_attributes.clear();
+  std::erase_if(file.mesh.triangles, [&](const Triangle& t) {
+    return std::any_of(t.begin(), t.end(),
+                       [&](std::int32_t v) { return source.values[static_cast<std::size_t>(v)] > 0; });
+  });
+  EXPECT_GT(upward_of(file).dot(leaning), 0.99);
 }
 
 }  // namespace

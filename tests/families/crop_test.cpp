@@ -5,6 +5,7 @@
 #include "base/random_stream.hpp"
 #include "families/crown_crop.hpp"
 #include "families/scanner_mesh.hpp"
+#include "families/synthetic_files.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
@@ -179,6 +180,42 @@ TEST(ScannerMesh, isADiscOnTheSameSurface) {
   for (const Point& p : scan.vertices) EXPECT_NEAR(p.norm(), 5, 0.06);
   EXPECT_THROW(scanner_mesh(*crown, 5, 0.01, 3), UsageError);
   EXPECT_THROW(scanner_mesh(*crown, 0.5, -1, 3), UsageError);
+}
+
+TEST(TrimClean, CutsALittleAboveTheJunction) {
+  const SyntheticTooth tooth = ball(5);
+  RandomStream random(3, 200);
+  const CroppedCrown crown = trim_clean(tooth, random);
+  expect_disc(crown.mesh);
+  EXPECT_EQ(crown.line.offset_mm, 0.4);
+  double least = 5;
+  for (const Point& p : crown.mesh.vertices) least = std::min(least, p.z());
+  EXPECT_GT(least, -0.4);
+  EXPECT_LT(least, 1.2);
+}
+
+TEST(SyntheticFile, OfTheRightSideIsMirroredAndFacesOutward) {
+  const SyntheticTooth tooth = ball(5);
+  const MeshFile left = synthetic_tooth_file(tooth, {}, false), right = synthetic_tooth_file(tooth, {}, true);
+  EXPECT_GT(volume(left.mesh), 0);
+  EXPECT_NEAR(volume(right.mesh), volume(left.mesh), 1e-9);
+  EXPECT_EQ(right.mesh.vertices[40].x(), -left.mesh.vertices[40].x());
+  const std::vector<double>& source = left.vertex_attributes.at(source_attribute).values;
+  EXPECT_EQ(source.front(), static_cast<double>(VertexSource::scan));
+  EXPECT_EQ(source.back(), static_cast<double>(VertexSource::predicted));
+  EXPECT_EQ(right.vertex_attributes.at(source_attribute).values, source);
+}
+
+TEST(SyntheticFile, OfACrownIsAsItWasCutOrAsAScannerSeesIt) {
+  const SyntheticTooth tooth = ball(5);
+  RandomStream random(3, 200);
+  const CroppedCrown crown = trim_clean(tooth, random);
+  const MeshFile cut = synthetic_crown_file(tooth, crown, true, {});
+  EXPECT_EQ(cut.mesh.triangles, on_other_side(crown.mesh).triangles);
+  EXPECT_NEAR(cut.mesh.vertices[7].x(), -crown.mesh.vertices[7].x(), 1e-6);
+  EXPECT_EQ(cut.comments, synthetic_tooth_file(tooth, crown.line, true).comments);
+  const MeshFile scanned = synthetic_crown_file(tooth, crown, false, {0.5, 0, 7});
+  EXPECT_EQ(scanned.mesh.vertices, scanner_mesh(crown.mesh, 0.5, 0, 7).vertices);
 }
 
 }  // namespace

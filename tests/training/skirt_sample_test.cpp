@@ -80,6 +80,21 @@ TEST(LabelByRestored, FindsWhatCoincides) {
   EXPECT_THROW(label_by_restored(crown, ball, 0), UsageError);
 }
 
+TEST(LabelledFiles, SayWhatIsTooth) {
+  SkirtSample sample;
+  sample.mesh = dome();
+  sample.is_tooth.assign(sample.mesh.vertices.size(), 1);
+  sample.is_tooth[3] = 0;
+  const std::vector<double> wanted(sample.is_tooth.begin(), sample.is_tooth.end());
+  EXPECT_EQ(skirt_sample_file(sample).vertex_attributes.at("tooth").values, wanted);
+  MeshFile crown;
+  crown.mesh = sample.mesh;
+  crown.triangle_attributes["label"] = {AttributeType::uint8, std::vector<double>(crown.mesh.triangles.size(), 11)};
+  const MeshFile labelled = labelled_crown_file(crown, sample.is_tooth);
+  EXPECT_EQ(labelled.vertex_attributes.at("tooth").values, wanted);
+  EXPECT_TRUE(labelled.triangle_attributes.empty());
+}
+
 class SkirtSamples : public ::testing::Test {
  protected:
   static inline const std::filesystem::path data = std::filesystem::path(RHIZODONT_SOURCE_DIR) / "../shared/data";
