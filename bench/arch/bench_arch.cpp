@@ -8,7 +8,8 @@
 // elements in another order, and turned, moved and rounded to float. `time` takes arches beside their teeth one after
 // the other.
 #include "base/float_bits.hpp"
-#include "common/stopwatch.hpp"
+#include "base/peak_memory.hpp"
+#include "common/timing.hpp"
 #include "mesh/closest_point.hpp"
 #include "rhizodont/arch.hpp"
 #include "rhizodont/error.hpp"

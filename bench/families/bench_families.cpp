@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // How fast teeth and training samples are made, whether they are sound, and how near the families come to real crowns.
-#include "common/stopwatch.hpp"
+#include "base/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "crown_fit.hpp"
 #include "families/mean_teeth.hpp"
 #include "mesh/diagnosis.hpp"
@@ -18,7 +19,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdlib>
 #include <string>
 
@@ -116,9 +116,9 @@ void nearness(const ToothFamilies& families, const std::filesystem::path& data) 
 }
 
 int run(const std::filesystem::path& data, std::uint64_t seeds) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const ToothFamilies families = load_tooth_families(data);
-  speed(families, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+  speed(families, watch.seconds());
   soundness(families, seeds);
   registration_table(families, std::max<std::uint64_t>(seeds, 2));
   nearness(families, data);

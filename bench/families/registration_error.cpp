@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registration_error.hpp"
 
-#include "common/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "completion/registration.hpp"
 #include "families/crown_crop.hpp"
 #include "families/mean_teeth.hpp"

@@ -4,8 +4,9 @@
 // The figures of "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", tables 3 and 5, on
 // the validation teeth, and the time of each stage and step. usage: bench_fusion DATA_FOLDER MODELS_FOLDER [REPEATS=5]
 
+#include "base/peak_memory.hpp"
 #include "common/bench_teeth.hpp"
-#include "common/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "rhizodont/complete.hpp"
 
 #include <fmt/format.h>

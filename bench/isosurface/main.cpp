@@ -4,7 +4,7 @@
 // bench_isosurface DATA_FOLDER: angles, counts and times of MidNormal and GradNormal, as Markdown.
 
 #include "common/bench_teeth.hpp"
-#include "common/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "isosurface/isosurface.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/geometry.hpp"

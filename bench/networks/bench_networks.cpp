@@ -5,7 +5,7 @@
 // bench_networks DATA MODELS. Compared on one thread each: where other work shares the processor, OpenMP's threads spin
 // at every barrier of torch, and more of them would time the waiting.
 #include "common/bench_teeth.hpp"
-#include "common/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "completion/mean_crowns.hpp"
 #include "completion/registration.hpp"
 #include "learning/adapointr.hpp"

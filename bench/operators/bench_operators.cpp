@@ -3,7 +3,7 @@
 
 // Time of the operators on a crown of growing size: bench_operators DATA
 #include "common/bench_teeth.hpp"
-#include "common/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "operators/eigenbasis.hpp"
 
 #include <fmt/core.h>

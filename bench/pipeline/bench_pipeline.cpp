@@ -5,8 +5,9 @@
 // usage: bench_pipeline [CSV] [VERTICES ...]. Processor seconds are printed beside wall-clock seconds, since other work
 // on the machine does not change them.
 
+#include "base/peak_memory.hpp"
 #include "common/hostile_crowns.hpp"
-#include "common/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 

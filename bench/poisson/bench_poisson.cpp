@@ -11,7 +11,7 @@
 #include <string>
 
 #include "common/bench_teeth.hpp"
-#include "common/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "guiding/crown_fit.hpp"
 #include "guiding/fitted_surface.hpp"
 #include "guiding/guiding_cloud.hpp"

@@ -3,9 +3,9 @@
 #include "poisson/clouds.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
+#include "base/stopwatch.hpp"
 #include "common/bench_teeth.hpp"
 #include "completion/complete_points.hpp"
 #include "pipeline/models.hpp"
@@ -30,9 +30,9 @@ std::vector<BenchPrediction> predict_validation_teeth(const std::filesystem::pat
 double best_seconds(const std::function<void()>& work, int repeats) {
   double best = std::numeric_limits<double>::max();
   for (int i = 0; i < repeats; ++i) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     work();
-    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    best = std::min(best, watch.seconds());
   }
   return best;
 }

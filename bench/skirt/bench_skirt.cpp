@@ -4,7 +4,7 @@
 // Finding the skirt: time by the crown's size, and whether a decimated copy does as well as the crown itself.
 //   bench_skirt DATA WEIGHTS
 #include "common/bench_teeth.hpp"
-#include "common/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "mesh/adjacency.hpp"
 #include "rhizodont/error.hpp"
 #include "skirt/skirt.hpp"

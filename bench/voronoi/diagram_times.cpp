@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "common/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "isosurface/isosurface.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"

@@ -4,6 +4,7 @@
 
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/hash.hpp"
 
 #include <filesystem>
 #include <optional>
@@ -46,8 +47,5 @@ struct ExcusedByReport {
 /// completed tooth or the report on another file.
 ExcusedByReport excused_by_report(const std::filesystem::path& report, const std::string& crown_sha256,
                                   const std::vector<int>& file_vertices);
-
-/// SHA-256 in lower-case hex.
-std::string sha256_of_bytes(std::string_view bytes);
 
 }  // namespace rhizodont

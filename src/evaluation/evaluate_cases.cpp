@@ -3,6 +3,7 @@
 #include "evaluation/evaluate_cases.hpp"
 
 #include "base/lower_case.hpp"
+#include "base/stopwatch.hpp"
 #include "mesh/closest_point.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -10,7 +11,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <string_view>
@@ -79,9 +79,9 @@ CaseOutcome evaluate(const NamedPredictor& predictor, int fdi, const TriangleMes
   CaseOutcome outcome;
   try {
     const Eigen::Vector3d axis = crown_growth_axis(crown);
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     const ToothPrediction tooth = predictor.predict(crown, fdi);
-    outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    outcome.seconds = watch.seconds();
     outcome.figures = root_figures(crown, truth, tooth.mesh, axis, options);
     if (!tooth.uncertainty.empty()) outcome.uncertainty = uncertainty_figures(tooth, truth, *outcome.figures);
   } catch (const UsageError&) {

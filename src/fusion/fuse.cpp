@@ -6,6 +6,7 @@
 #include "fusion/fuse.hpp"
 
 #include "base/option_range.hpp"
+#include "base/stopwatch.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
@@ -15,7 +16,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -75,19 +75,6 @@ std::vector<Point> cutting_points(const JoinedTooth& tooth, const std::vector<st
   return points;
 }
 
-class Stopwatch {
- public:
-  /// Adds the seconds since the last call, or since the start, to `sum`.
-  void add_to(double& sum) {
-    const auto now = std::chrono::steady_clock::now();
-    sum += std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
-
 /// Remeshes the root; where that makes the tooth cut itself, the triangles around are left as they were.
 void improve_triangles(const Ground& ground, const FuseOptions& options, FusedTooth& fused) {
   std::vector<Point> frozen;
@@ -111,12 +98,12 @@ Joining join(const Ground& ground, const FuseOptions& options, const SeparationO
              FuseSeconds& spent) {
   Stopwatch watch;
   const auto is_root = separate_crown_and_root(ground.surface, ground.distances, ground.growth_axis, separation);
-  watch.add_to(spent.separation);
+  spent.separation += watch.restart();
   const std::vector<Point> root =
       root_sites(ground.walk, is_root, ground.crown, ground.border, ground.lengths, options.sites);
-  watch.add_to(spent.sites);
+  spent.sites += watch.restart();
   Joining joining = join_crown_and_root(ground.crown, root, ground.surface, options.join);
-  watch.add_to(spent.joining);
+  spent.joining += watch.restart();
   return joining;
 }
 
@@ -128,14 +115,14 @@ std::optional<FusedTooth> finished_at_once(const Ground& ground, const Joining& 
   RestoreOptions restore = options.restore;
   restore.test_cuts = false;
   fused.tooth = restore_crown(ground.crown, joining, restore);
-  watch.add_to(spent.restoring);
+  spent.restoring += watch.restart();
   if (!diagnose(fused.tooth.mesh).is_closed_solid()) return std::nullopt;
   fused.remeshing = remesh_root(fused.tooth, ground.walk, ground.lengths, {}, 0, options.remesh);
-  watch.add_to(spent.remeshing);
+  spent.remeshing += watch.restart();
   TransitionOptions quick = transition;
   quick.cut_rounds = 1;
   fused.transition = smooth_transition(fused.tooth, quick);
-  watch.add_to(spent.transition);
+  spent.transition += watch.restart();
   if (fused.transition.cuts_itself) return std::nullopt;
   return fused;
 }
@@ -146,13 +133,13 @@ FusedTooth finished_step_by_step(const Ground& ground, const Joining& joining, c
   FusedTooth fused;
   Stopwatch watch;
   fused.tooth = restore_crown(ground.crown, joining, options.restore);
-  watch.add_to(spent.restoring);
+  spent.restoring += watch.restart();
   if (!diagnose(fused.tooth.mesh).is_closed_solid())
     throw NoResultError("Crown and root together do not form a solid of one piece.");
   improve_triangles(ground, options, fused);
-  watch.add_to(spent.remeshing);
+  spent.remeshing += watch.restart();
   fused.transition = smooth_transition(fused.tooth, transition);
-  watch.add_to(spent.transition);
+  spent.transition += watch.restart();
   if (fused.transition.cuts_itself) throw NoResultError("The tooth cuts itself at the seam.");
   return fused;
 }
@@ -232,7 +219,7 @@ FusedTooth fuse_crown_and_root(const PreparedCrown& crown, const TriangleMesh& g
   FuseSeconds spent;
   Stopwatch watch;
   Ground ground(crown, guiding_surface, growth_axis, options);
-  watch.add_to(spent.separation);
+  spent.separation += watch.restart();
   FusedTooth best = fuse_on(ground, options, spent);
   double share = least_angle_share(best.tooth, options.transition);
   for (const double growth : options.other_growths) {

@@ -9,11 +9,11 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
 #include "base/option_range.hpp"
+#include "base/stopwatch.hpp"
 #include "learning/threads.hpp"
 #include "learning/weights.hpp"
 #include "rhizodont/error.hpp"
@@ -233,7 +233,7 @@ TensorFile train_classifier(const LabelledPanoramas& samples, const ClassifierTr
                         static_cast<std::int64_t>(samples.columns)});
   const torch::Tensor labels = torch::tensor(samples.labels).to(torch::kLong);
   nn::CrossEntropyLoss criterion(nn::CrossEntropyLossOptions().label_smoothing(options.label_smoothing));
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   double running = 0;
   for (int step = 0; step < options.steps; ++step) {
     for (auto& group : optimiser.param_groups())
@@ -248,13 +248,12 @@ TensorFile train_classifier(const LabelledPanoramas& samples, const ClassifierTr
     if (!std::isfinite(now)) throw NoResultError("Training came to a loss that is no number.");
     running = step == 0 ? now : 0.98 * running + 0.02 * now;
     if (options.progress && ((step + 1) % options.report_steps == 0 || step + 1 == options.steps)) {
-      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
       TrainingProgress progress;
       progress.steps = static_cast<std::uint64_t>(step) + 1;
       progress.samples = progress.steps * static_cast<std::uint64_t>(options.batch);
       progress.loss = running;
       progress.learning_rate = rate_at(step, options);
-      progress.samples_per_second = static_cast<double>(progress.samples) / std::max(taken.count(), 1e-9);
+      progress.samples_per_second = static_cast<double>(progress.samples) / std::max(watch.seconds(), 1e-9);
       options.progress(progress);
     }
   }

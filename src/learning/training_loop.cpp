@@ -7,12 +7,12 @@
 #include "learning/training_loop.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <future>
 #include <numbers>
 
 #include "base/option_range.hpp"
+#include "base/stopwatch.hpp"
 #include "learning/checkpoint.hpp"
 #include "learning/optimiser.hpp"
 #include "learning/threads.hpp"
@@ -22,9 +22,7 @@
 namespace rhizodont {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-double minutes_since(Clock::time_point then) { return std::chrono::duration<double>(Clock::now() - then).count() / 60; }
+double minutes(const Stopwatch& watch) { return watch.seconds() / 60; }
 
 void add(TrainingShare& sum, const TrainingShare& share) {
   for (std::size_t i = 0; i < sum.gradients.size(); ++i) {
@@ -253,33 +251,33 @@ void TrainingLoop::load_start() {
 }
 
 TrainingLoopResult TrainingLoop::run() {
-  const Clock::time_point start = Clock::now();
-  Clock::time_point reported = start, saved = start, validated = start;
+  const Stopwatch whole;
+  Stopwatch reported, saved, validated;
   double outside = 0;  // minutes since the last report that were not training
   const bool validates = options_.validation_samples > 0 && task_.validate;
   const auto goes_on = [&] {
     const bool wanted =
-        result_.samples < options_.samples && (options_.hours <= 0 || minutes_since(start) < options_.hours * 60);
+        result_.samples < options_.samples && (options_.hours <= 0 || minutes(whole) < options_.hours * 60);
     return processes_.share(wanted ? 1 : 0) == 1;  // clocks differ, and nobody must wait for one who has stopped
   };
   while (goes_on()) {
     step();
     if (tally_.steps == options_.report_steps) {
-      report_steps(minutes_since(reported) - outside);
+      report_steps(minutes(reported) - outside);
       outside = 0;
-      reported = Clock::now();
+      reported.restart();
     }
     if (!processes_.is_first()) continue;
-    const Clock::time_point pause = Clock::now();
-    if (validates && minutes_since(validated) >= options_.validation_minutes) {
+    const Stopwatch pause;
+    if (validates && minutes(validated) >= options_.validation_minutes) {
       validate();
-      validated = Clock::now();
+      validated.restart();
     }
-    if (minutes_since(saved) >= options_.checkpoint_minutes) {
+    if (minutes(saved) >= options_.checkpoint_minutes) {
       save_checkpoint();
-      saved = Clock::now();
+      saved.restart();
     }
-    outside += minutes_since(pause);
+    outside += minutes(pause);
   }
   if (!processes_.is_first()) return result_;
   if (validates) validate();

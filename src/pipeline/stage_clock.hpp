@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/stopwatch.hpp"
 #include "rhizodont/complete.hpp"
 
-#include <chrono>
 #include <exception>
 #include <string>
 #include <vector>
@@ -42,7 +42,7 @@ class StageClock {
   const ProgressCallback& progress_;
   std::vector<StageRecord> records_;
   std::size_t current_ = 0;
-  std::chrono::steady_clock::time_point started_;
+  Stopwatch watch_;  // of the stage at work
   bool running_ = false;
 };
 

@@ -5,7 +5,6 @@
 #include "rhizodont/report.hpp"
 
 #include <fmt/format.h>
-#include <openssl/evp.h>
 #include <nlohmann/json.hpp>
 
 #include <array>
@@ -78,18 +77,6 @@ ExcusedByReport excused_by_report(const std::filesystem::path& report, const std
   } catch (const std::out_of_range&) {
     throw InputError(fmt::format("{} names vertices that the crown does not have.", report.string()));
   }
-}
-
-std::string sha256_of_bytes(std::string_view bytes) {
-  const std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context(EVP_MD_CTX_new(), &EVP_MD_CTX_free);
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest;
-  unsigned int length = 0;
-  EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr);
-  EVP_DigestUpdate(context.get(), bytes.data(), bytes.size());
-  EVP_DigestFinal_ex(context.get(), digest.data(), &length);
-  std::string hex;
-  for (unsigned int i = 0; i < length; ++i) hex += fmt::format("{:02x}", digest[i]);
-  return hex;
 }
 
 }  // namespace rhizodont

@@ -112,9 +112,5 @@ TEST(Report, WhatItExcusesIsReadBackInTheMeshsNumbers) {
   EXPECT_THROW(excused_by_report(refused, input.sha256, {}), InputError);
 }
 
-TEST(Report, HashByTheStandardsExample) {
-  EXPECT_EQ(sha256_of_bytes("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
-}
-
 }  // namespace
 }  // namespace rhizodont

@@ -18,7 +18,4 @@ struct LinearGrowth {
 };
 LinearGrowth fit_linear_growth(const std::vector<double>& sizes, const std::vector<double>& seconds);
 
-/// Peak resident memory of this process so far, MB.
-double peak_memory_mb();
-
 }  // namespace rhizodont
