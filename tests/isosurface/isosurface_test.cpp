@@ -290,5 +290,24 @@ TEST(GradNormal, RefusesBadInput) {
   EXPECT_THROW(grad_normal(sphere(1.0), 0.0, seeds, options), UsageError);
 }
 
+TEST(MarchingTetrahedra, HasVerticesOnTheSurfaceAndKeepsAllParts) {
+  const ScalarField two_balls = [](const Point& p) {
+    FieldSample sample;
+    const double a = p.norm(), b = (p - Point(6.0, 0.0, 0.0)).norm();
+    sample.value = std::max(1.0 - a, 1.0 - b);
+    return sample;
+  };
+  const std::vector<Point> seeds{Point(1.0, 0.0, 0.0), Point(5.0, 0.0, 0.0)};
+  IsosurfaceOptions options;
+  options.e = 0.2;
+  const double ball = 4.0 / 3.0 * std::numbers::pi;
+  const TriangleMesh one = marching_tetrahedra(two_balls, 0.0, seeds, options);
+  EXPECT_NEAR(volume(one), ball, 0.05 * ball);
+  options.every_component = true;
+  const TriangleMesh both = marching_tetrahedra(two_balls, 0.0, seeds, options);
+  EXPECT_NEAR(volume(both), 2.0 * ball, 0.1 * ball);
+  for (const Point& p : both.vertices) EXPECT_NEAR(two_balls(p).value, 0.0, 1e-6);
+}
+
 }  // namespace
 }  // namespace rhizodont

@@ -13,7 +13,7 @@
 #include "guiding/crown_fit.hpp"
 #include "guiding/guiding_cloud.hpp"
 #include "guiding/guiding_surface.hpp"
-#include "isosurface/iterative_poisson.hpp"
+#include "isosurface/isosurface.hpp"
 #include "mesh/pieces.hpp"
 #include "mesh/repair.hpp"
 #include "mesh/test_meshes.hpp"
@@ -156,13 +156,6 @@ TEST(OptionRanges, OfTheGuidingSurface) {
       .of("smearings", &G::smearings, {0})
       .set("degree", [](G& o) { o.indicator.degree = 3; })
       .set("max_change", [](G& o) { o.isosurface.max_change = -1; });
-  using P = IterativePoissonOptions;
-  Faults<P>(faults, [](const P& o) { iterative_poisson({}, o); })
-      .of("e", &P::e, {0.0})
-      .of("neighbours", &P::neighbours, {0})
-      .of("most_iterations", &P::most_iterations, {0})
-      .of("still", &P::still, {0.0})
-      .set("degree", [](P& o) { o.indicator.degree = 3; });
   using C = GuidingCloudOptions;
   Faults<C>(faults, [](const C& o) { assemble_guiding_cloud(dome(), {}, o); })
       .of("crown_spacing", &C::crown_spacing, {0.0})

@@ -1,13 +1,17 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "isosurface/iterative_poisson.hpp"
+#include "poisson/iterative_poisson.hpp"
 
 #include <gtest/gtest.h>
 
+#include "common/option_faults.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
 #include "poisson/shapes.hpp"
-#include "rhizodont/error.hpp"
+
+#include <numbers>
+#include <random>
+#include <vector>
 
 namespace rhizodont {
 namespace {
@@ -52,29 +56,16 @@ TEST(IterativePoisson, IsTheSameForTheSameSeed) {
             iterative_poisson(truth.points, options).oriented.normals);
 }
 
-TEST(IterativePoisson, RefusesBadOptions) {
-  IterativePoissonOptions options;
-  options.most_iterations = 0;
-  EXPECT_THROW(iterative_poisson(shapes::sphere(100, 2.0).points, options), UsageError);
-}
-
-TEST(MarchingTetrahedra, HasVerticesOnTheSurfaceAndKeepsAllParts) {
-  const ScalarField two_balls = [](const Point& p) {
-    FieldSample sample;
-    const double a = p.norm(), b = (p - Point(6.0, 0.0, 0.0)).norm();
-    sample.value = std::max(1.0 - a, 1.0 - b);
-    return sample;
-  };
-  const std::vector<Point> seeds{Point(1.0, 0.0, 0.0), Point(5.0, 0.0, 0.0)};
-  IsosurfaceOptions options;
-  options.e = 0.2;
-  const double ball = 4.0 / 3.0 * std::numbers::pi;
-  const TriangleMesh one = marching_tetrahedra(two_balls, 0.0, seeds, options);
-  EXPECT_NEAR(volume(one), ball, 0.05 * ball);
-  options.every_component = true;
-  const TriangleMesh both = marching_tetrahedra(two_balls, 0.0, seeds, options);
-  EXPECT_NEAR(volume(both), 2.0 * ball, 0.1 * ball);
-  for (const Point& p : both.vertices) EXPECT_NEAR(two_balls(p).value, 0.0, 1e-6);
+TEST(IterativePoisson, RefusesOptionsOutOfRange) {
+  std::vector<test::Fault> faults;
+  using P = IterativePoissonOptions;
+  test::Faults<P>(faults, [](const P& o) { iterative_poisson({}, o); })
+      .of("e", &P::e, {0.0})
+      .of("neighbours", &P::neighbours, {0})
+      .of("most_iterations", &P::most_iterations, {0})
+      .of("still", &P::still, {0.0})
+      .set("degree", [](P& o) { o.indicator.degree = 3; });
+  test::expect_each_refused_by_name(faults);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 // F. Hou, C. Wang, W. Wang, H. Qin, C. Qian, Y. He, "Iterative Poisson Surface Reconstruction (iPSR) for Unoriented
 // Points", ACM Transactions on Graphics 41(4), 2022.
-#include "isosurface/iterative_poisson.hpp"
+#include "poisson/iterative_poisson.hpp"
 
 #include <algorithm>
 #include <cmath>
