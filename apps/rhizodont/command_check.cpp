@@ -101,10 +101,8 @@ void run(const CheckCommand& command) {
   const MeshFile tooth = load_mesh(command.tooth);
   CheckOptions options = command.options;
   if (!command.report.empty()) {
-    const ExcusedByReport excused = excused_by_report(command.report, sha256, crown.file_vertices);
-    options = allowing_for(excused.repairs);
+    options = allowing_for(excused_by_report(command.report, sha256, crown.file_vertices));
     options.least_kept_share = command.options.least_kept_share;
-    options.dropped_vertices = excused.dropped_vertices;
   }
   const CheckReport report = check(crown.mesh, tooth.mesh, options);
   if (command.json.wants_table()) print_table(report);

@@ -77,20 +77,6 @@ void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::strin
   for (const std::string& warning : all_warnings(r)) fmt::print(out, "  note: {}\n", warning);
 }
 
-/// The input with what the skirt network thinks of its vertices.
-MeshFile confidence_file(const MeshFile& crown, const CompletionRecord& record) {
-  MeshFile file;
-  file.mesh = crown.mesh;
-  VertexAttribute confidence{AttributeType::float32, {}};
-  for (const float c : record.crown.tooth_confidence) confidence.values.push_back(static_cast<double>(c));
-  file.vertex_attributes["confidence"] = std::move(confidence);
-  VertexAttribute kept{AttributeType::uint8, std::vector<double>(crown.mesh.vertices.size(), 0)};
-  for (const int v : record.crown.kept_vertices) kept.values[static_cast<std::size_t>(v)] = 1;
-  file.vertex_attributes["kept"] = std::move(kept);
-  file.comments = {"confidence: that a vertex is tooth and not skirt, 0 to 1; -1 not judged", "kept: 1 in the tooth"};
-  return file;
-}
-
 /// All that the crowns of a command have in common.
 class Completion {
  public:
@@ -159,17 +145,11 @@ class Completion {
     attempt.notes = crown.notes;
     const CompleteOptions& options = attempt.options;
     ReportedInput& input = attempt.input;
-    if (command_.as_float) {
-      const double moved = round_to_float(crown.mesh);
-      if (moved > 0) input.rounded_mm = moved * options.millimetres_per_unit;
-    } else if (!crown.coordinates_fit_float &&
-               holds_floats_only(name_with_format(job.teeth.front(), command_.files.output_format))) {
-      throw UsageError(
-          fmt::format("{} has coordinates with more digits than {} can hold: give the tooth a name in .ply or .obj, or "
-                      "have the crown "
-                      "rounded (--as-float).",
-                      job.shown_crown(), job.teeth.front().string()));
-    }
+    if (command_.as_float)
+      input.rounded_mm = round_coordinates(crown, options.millimetres_per_unit);
+    else
+      require_format_holds_crown(crown, job.shown_crown(), job.teeth.front(),
+                                 name_with_format(job.teeth.front(), command_.files.output_format));
     const std::string before =
         jobs_.size() > 1 ? fmt::format("{} ({} of {}): ", job.shown_crown(), place + 1, jobs_.size()) : "";
     const ProgressCallback progress = progress_line(command_.quiet, before);
@@ -187,10 +167,7 @@ class Completion {
       throw;
     }
     clear_line(progress);
-    if (input.rounded_mm)
-      for (CompletedTooth& tooth : candidates)
-        tooth.record.warnings.push_back(fmt::format(
-            "The crown's coordinates were rounded to float (--as-float), by {:.1g} mm at most.", *input.rounded_mm));
+    for (CompletedTooth& tooth : candidates) warn_of_rounding(input, tooth.record);
     for (std::size_t i = 0; i < candidates.size(); ++i)
       require_format_holds(candidates[i], name_with_format(job.teeth[i], command_.files.output_format));
     write_results(job, crown, candidates, input);

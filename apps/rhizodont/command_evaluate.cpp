@@ -35,9 +35,7 @@ NamedPredictor rhizodont_predictor(const EvaluateCommand& command) {
   return {"rhizodont", [models, options = command.options](const TriangleMesh& crown, int fdi) {
             CompleteOptions of_this = options;
             of_this.fdi = fdi;
-            const CompletedTooth tooth = complete_tooth(crown, *models, of_this);
-            return ToothPrediction{tooth.mesh, tooth.record.root.interval, tooth.record.root.apex_expected_distance_mm,
-                                   tooth.uncertainty};
+            return prediction_of(complete_tooth(crown, *models, of_this));
           }};
 }
 
@@ -134,10 +132,7 @@ void print_table(const Evaluation& evaluation) {
 /// The weight file with which these teeth were completed, with the scales that they call for.
 OutputFile calibrated_weights(const EvaluateCommand& command, const Evaluation& evaluation) {
   TensorFile weights = read_safetensors(command.calibrate);
-  const UncertaintyScales used = uncertainty_scales(weights.metadata).value_or(UncertaintyScales{0, 0, 0, 1});
-  const UncertaintyScales scales = calibrate(evaluation, 0, used);
-  note_uncertainty_scales(scales, weights.metadata);
-  weights.metadata["uncertainty.teeth"] = std::to_string(mean_figures(evaluation, 0).teeth);
+  const UncertaintyScales scales = calibrate_weights(evaluation, 0, weights.metadata);
   fmt::print("{}: root length {:+.2f} to {:+.2f}, apex {:.2f}, surface {:.2f} times the expected distance\n",
              command.calibrate, scales.length_low, scales.length_high, scales.apex, scales.surface);
   return {command.calibrate, safetensors_bytes(weights)};

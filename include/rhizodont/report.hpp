@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/hash.hpp"
@@ -47,5 +48,8 @@ struct ExcusedByReport {
 /// completed tooth or the report on another file.
 ExcusedByReport excused_by_report(const std::filesystem::path& report, const std::string& crown_sha256,
                                   const std::vector<int>& file_vertices);
+
+/// Options of `check` that excuse that, no more; else the defaults.
+CheckOptions allowing_for(const ExcusedByReport& excused);
 
 }  // namespace rhizodont

@@ -5,8 +5,11 @@
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "rhizodont/report.hpp"
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 namespace rhizodont {
 
@@ -16,9 +19,26 @@ namespace rhizodont {
 /// the numbers of `crown.mesh`, not yet those of the file (`refer_to_file`).
 MeshFile tooth_file(const CompletedTooth& tooth, const MeshFile& crown);
 
+/// The crown as a file with what the skirt network thinks of its vertices: `confidence`, that one is tooth, 0 to 1, -1
+/// where it was not judged; `kept`, 1 if it is in the tooth. Precondition as of `tooth_file`; the record is of a
+/// completion in which a skirt was looked for.
+MeshFile confidence_file(const MeshFile& crown, const CompletionRecord& record);
+
 /// The FDI number of a permanent tooth that a file's name holds, if it holds just one: two digits with none beside them
 /// that are no part of a date.
 std::optional<int> fdi_in_name(const std::filesystem::path& file);
+
+/// Rounds the crown's coordinates to float, which is all that STL and GLB can hold. Returns by how much at most, in mm;
+/// nothing if they were floats before. Throws InputError (id of the vertex) for a coordinate beyond all floats.
+std::optional<double> round_coordinates(MeshFile& crown, double millimetres_per_unit);
+
+/// Throws UsageError where the format that the name `written_as` stands for has not the digits of the crown's
+/// coordinates; the sentence calls the files `crown_name` and `output`.
+void require_format_holds_crown(const MeshFile& crown, const std::string& crown_name,
+                                const std::filesystem::path& output, const std::filesystem::path& written_as);
+
+/// Puts a warning into the record if the crown was rounded before it was completed.
+void warn_of_rounding(const ReportedInput& input, CompletionRecord& record);
 
 /// Throws NoResultError where the format of `output` holds single precision alone and the tooth needs more: of a crown
 /// in single precision so far from the origin that new vertices there have double (`complete_tooth`).

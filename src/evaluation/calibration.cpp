@@ -48,6 +48,15 @@ UncertaintyScales calibrate(const Evaluation& evaluation, std::size_t predictor,
           measured / said};
 }
 
+UncertaintyScales calibrate_weights(const Evaluation& evaluation, std::size_t predictor,
+                                    std::map<std::string, std::string>& metadata) {
+  const UncertaintyScales used = uncertainty_scales(metadata).value_or(UncertaintyScales{0, 0, 0, 1});
+  const UncertaintyScales scales = calibrate(evaluation, predictor, used);
+  note_uncertainty_scales(scales, metadata);
+  metadata["uncertainty.teeth"] = std::to_string(mean_figures(evaluation, predictor).teeth);
+  return scales;
+}
+
 void to_json(nlohmann::ordered_json& json, const Coverage& coverage) {
   json = {{"teeth", coverage.teeth}};
   if (coverage.teeth == 0) return;

@@ -6,6 +6,8 @@
 #include "evaluation/evaluate_cases.hpp"
 
 #include <cstddef>
+#include <map>
+#include <string>
 
 namespace rhizodont {
 
@@ -22,6 +24,11 @@ Coverage coverage(const Evaluation& evaluation, std::size_t predictor);
 /// per vertex would be right on average (split conformal prediction, see `UncertaintyScales`). `used`: the scales with
 /// which the teeth were completed. Throws UsageError for fewer than 20 teeth with figures.
 UncertaintyScales calibrate(const Evaluation& evaluation, std::size_t predictor, const UncertaintyScales& used);
+
+/// `calibrate` for the weights with which these teeth were completed: their scales, and from how many teeth they come,
+/// go into the weights' metadata. Returns the scales. Throws as `calibrate`.
+UncertaintyScales calibrate_weights(const Evaluation& evaluation, std::size_t predictor,
+                                    std::map<std::string, std::string>& metadata);
 
 /// For `nlohmann::ordered_json(value)`.
 void to_json(nlohmann::ordered_json& json, const Coverage& coverage);

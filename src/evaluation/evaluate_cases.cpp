@@ -94,6 +94,10 @@ CaseOutcome evaluate(const NamedPredictor& predictor, int fdi, const TriangleMes
 
 }  // namespace
 
+ToothPrediction prediction_of(const CompletedTooth& tooth) {
+  return {tooth.mesh, tooth.record.root.interval, tooth.record.root.apex_expected_distance_mm, tooth.uncertainty};
+}
+
 std::vector<EvaluationCase> find_evaluation_cases(const std::filesystem::path& folder) {
   const auto crowns = numbered_files(folder, "crown_"), teeth = numbered_files(folder, "tooth_");
   if (crowns.empty()) throw InputError("The folder " + folder.string() + " has no crown_FDI files.");

@@ -38,6 +38,9 @@ struct ToothPrediction {
   std::vector<double> uncertainty;       ///< mm per vertex, 0 on the crown; empty: the predictor does not say
 };
 
+/// A completed tooth as a prediction.
+ToothPrediction prediction_of(const CompletedTooth& tooth);
+
 /// Crown (mm) and FDI number to a whole tooth in the same place. May throw any error.
 using ToothPredictor = std::function<ToothPrediction(const TriangleMesh& crown, int fdi)>;
 

@@ -79,4 +79,10 @@ ExcusedByReport excused_by_report(const std::filesystem::path& report, const std
   }
 }
 
+CheckOptions allowing_for(const ExcusedByReport& excused) {
+  CheckOptions options = allowing_for(excused.repairs);
+  options.dropped_vertices = excused.dropped_vertices;
+  return options;
+}
+
 }  // namespace rhizodont

@@ -5,6 +5,8 @@
 #include "base/lower_case.hpp"
 #include "teeth/fdi.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -112,11 +114,42 @@ MeshFile tooth_file(const CompletedTooth& tooth, const MeshFile& crown) {
   return file;
 }
 
+MeshFile confidence_file(const MeshFile& crown, const CompletionRecord& record) {
+  MeshFile file;
+  file.mesh = crown.mesh;
+  VertexAttribute confidence{AttributeType::float32, {}};
+  for (const float c : record.crown.tooth_confidence) confidence.values.push_back(static_cast<double>(c));
+  file.vertex_attributes["confidence"] = std::move(confidence);
+  VertexAttribute kept{AttributeType::uint8, std::vector<double>(crown.mesh.vertices.size(), 0)};
+  for (const int v : record.crown.kept_vertices) kept.values[static_cast<std::size_t>(v)] = 1;
+  file.vertex_attributes["kept"] = std::move(kept);
+  file.comments = {"confidence: that a vertex is tooth and not skirt, 0 to 1; -1 not judged", "kept: 1 in the tooth"};
+  return file;
+}
+
 std::optional<int> fdi_in_name(const std::filesystem::path& file) {
   std::set<int> found;
   for (const std::string& number : numbers_in(file.stem().string()))
     if (const auto fdi = read_fdi(number); fdi && is_permanent_tooth(*fdi)) found.insert(*fdi);
   return found.size() == 1 ? std::optional(*found.begin()) : std::nullopt;
+}
+
+std::optional<double> round_coordinates(MeshFile& crown, double millimetres_per_unit) {
+  const double moved = round_to_float(crown.mesh);
+  return moved > 0 ? std::optional(moved * millimetres_per_unit) : std::nullopt;
+}
+
+void require_format_holds_crown(const MeshFile& crown, const std::string& crown_name,
+                                const std::filesystem::path& output, const std::filesystem::path& written_as) {
+  if (crown.coordinates_fit_float || !holds_floats_only(written_as)) return;
+  throw UsageError(crown_name + " has coordinates with more digits than " + output.string() +
+                   " can hold: give the tooth a name in .ply or .obj, or have the crown rounded (--as-float).");
+}
+
+void warn_of_rounding(const ReportedInput& input, CompletionRecord& record) {
+  if (input.rounded_mm)
+    record.warnings.push_back(fmt::format(
+        "The crown's coordinates were rounded to float (--as-float), by {:.1g} mm at most.", *input.rounded_mm));
 }
 
 void require_format_holds(const CompletedTooth& tooth, const std::filesystem::path& output) {

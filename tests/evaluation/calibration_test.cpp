@@ -64,6 +64,19 @@ TEST(Calibration, NeedsTeethThatSayHowSureTheyAre) {
   EXPECT_EQ(coverage(silent, 0).teeth, 0);
 }
 
+TEST(Calibration, GoesIntoTheWeightsMetadata) {
+  const UncertaintyScales used{-2, 3, 4, 0.25};
+  const Evaluation teeth = made_up(100, 3, used);
+  std::map<std::string, std::string> metadata;
+  note_uncertainty_scales(used, metadata);
+  const UncertaintyScales scales = calibrate_weights(teeth, 0, metadata);
+  EXPECT_EQ(scales.surface, calibrate(teeth, 0, used).surface);
+  EXPECT_EQ(metadata.at("uncertainty.teeth"), "100");
+  const auto noted = uncertainty_scales(metadata);
+  ASSERT_TRUE(noted);
+  EXPECT_NEAR(noted->length_high, scales.length_high, 1e-4);
+}
+
 TEST(Evaluation, SplitsByTypeInOrder) {
   Evaluation evaluation = made_up(10, 5, {0, 0, 0, 1});
   evaluation.cases[0].files.fdi = 46;

@@ -103,6 +103,10 @@ TEST(Report, WhatItExcusesIsReadBackInTheMeshsNumbers) {
   EXPECT_EQ(excused.repairs[0].vertices, std::vector<int>{2});
   EXPECT_EQ(excused.repairs[0].merged_into, std::vector<int>{0});
   EXPECT_EQ(excused.repairs[1].triangles, (std::vector<int>{7, 8}));
+  const CheckOptions options = allowing_for(excused);
+  EXPECT_EQ(options.dropped_vertices, excused.dropped_vertices);
+  EXPECT_EQ(options.repaired_triangles, (std::vector<int>{7, 8}));
+  EXPECT_EQ(options.merged_vertices, (std::vector<std::array<int, 2>>{{2, 0}}));
   EXPECT_THROW(excused_by_report(file, std::string(64, 'b'), crown.file_vertices), InputError);
   EXPECT_THROW(excused_by_report(file, input.sha256, {0, 1}), InputError);
   EXPECT_THROW(excused_by_report(folder.write("other.json", "{}"), input.sha256, {}), InputError);

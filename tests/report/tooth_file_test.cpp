@@ -155,5 +155,43 @@ TEST(ToothFile, ACrownOfLooseTrianglesIsTheSameTooth) {
     EXPECT_EQ(tooth.mesh.vertices[v], written[static_cast<std::size_t>(tooth.record.crown.kept_vertices[v])]);
 }
 
+TEST(ToothFile, ACrownWithMoreDigitsThanTheFormatIsRefusedOrRounded) {
+  MeshFile crown;
+  crown.mesh = {{{0.1, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  crown.coordinates_fit_float = false;
+  EXPECT_NO_THROW(require_format_holds_crown(crown, "crown.ply", "folder", "folder.ply"));
+  try {
+    require_format_holds_crown(crown, "crown.ply", "folder", "folder.stl");
+    ADD_FAILURE() << "was not refused";
+  } catch (const UsageError& error) {
+    EXPECT_STREQ(error.what(),
+                 "crown.ply has coordinates with more digits than folder can hold: give the tooth a name in .ply or "
+                 ".obj, or have the crown rounded (--as-float).");
+  }
+  ReportedInput input;
+  CompletionRecord record;
+  input.rounded_mm = round_coordinates(crown, 1000);
+  ASSERT_TRUE(input.rounded_mm);
+  EXPECT_NEAR(*input.rounded_mm, 1000 * (static_cast<double>(0.1F) - 0.1), 1e-12);
+  warn_of_rounding(input, record);
+  ASSERT_EQ(record.warnings.size(), 1U);
+  input.rounded_mm = round_coordinates(crown, 1000);
+  EXPECT_FALSE(input.rounded_mm) << "all are floats by now";
+  warn_of_rounding(input, record);
+  EXPECT_EQ(record.warnings.size(), 1U);
+  crown.coordinates_fit_float = true;
+  EXPECT_NO_THROW(require_format_holds_crown(crown, "crown.ply", "tooth.stl", "tooth.stl"));
+}
+
+TEST(ToothFile, ConfidencesSayWhatIsKept) {
+  const MeshFile crown = crown_with({});
+  CompletionRecord record = small_tooth().record;
+  record.crown.tooth_confidence = {1, 0.25, -1, 0};
+  const MeshFile file = confidence_file(crown, record);
+  EXPECT_EQ(file.mesh.vertices, crown.mesh.vertices);
+  EXPECT_EQ(file.vertex_attributes.at("confidence").values, (std::vector<double>{1, 0.25, -1, 0}));
+  EXPECT_EQ(file.vertex_attributes.at("kept").values, (std::vector<double>{1, 0, 1, 0}));
+}
+
 }  // namespace
 }  // namespace rhizodont
