@@ -195,9 +195,8 @@ void finish(const PreparedTooth::Content& prepared, StageClock& clock, Completed
 
 }  // namespace
 
-CompletedTooth finish_tooth(const PreparedTooth& prepared, const RootSteering& steering,
-                            std::optional<double> transition, const ProgressCallback& progress) {
-  const PreparedTooth::Content& content = *prepared.content_;
+CompletedTooth finished_tooth(const PreparedTooth::Content& content, const RootSteering& steering,
+                              std::optional<double> transition, const ProgressCallback& progress) {
   CompletedTooth tooth;
   tooth.options = content.options;
   tooth.options.steering = steering;
@@ -215,6 +214,11 @@ CompletedTooth finish_tooth(const PreparedTooth& prepared, const RootSteering& s
     tooth.record.stages.insert(tooth.record.stages.end(), stages.begin(), stages.end());
     return std::move(tooth);
   });
+}
+
+CompletedTooth finish_tooth(const PreparedTooth& prepared, const RootSteering& steering,
+                            std::optional<double> transition, const ProgressCallback& progress) {
+  return finished_tooth(*prepared.content_, steering, transition, progress);
 }
 
 }  // namespace rhizodont

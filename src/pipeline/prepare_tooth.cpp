@@ -85,11 +85,11 @@ TakenCrown take_at_workplace(const TriangleMesh& crown_at_work, const Workplace&
 }
 
 /// `kept_vertices`: says how far it came where this throws.
-std::shared_ptr<const PreparedTooth::Content> prepare(const TriangleMesh& input, const Workplace& place,
-                                                      const TriangleMesh& crown_at_work,
-                                                      std::shared_ptr<const CompletionModels::Content> shared_models,
-                                                      const CompleteOptions& options, StageClock& clock,
-                                                      std::vector<int>& kept_vertices) {
+std::shared_ptr<PreparedTooth::Content> prepare(const TriangleMesh& input, const Workplace& place,
+                                                const TriangleMesh& crown_at_work,
+                                                std::shared_ptr<const CompletionModels::Content> shared_models,
+                                                const CompleteOptions& options, StageClock& clock,
+                                                std::vector<int>& kept_vertices) {
   const CompletionModels::Content& models = *shared_models;
   clock.begin("crown");
   TakenCrown taken = take_at_workplace(crown_at_work, place, models, options);
@@ -118,7 +118,7 @@ std::shared_ptr<const PreparedTooth::Content> prepare(const TriangleMesh& input,
   record.root.source = root.prediction.source;
   if (auto warning = source_warning(root.prediction.source, tooth.fdi)) record.warnings.push_back(*std::move(warning));
   record.stages = clock.finish();
-  return std::make_shared<const PreparedTooth::Content>(
+  return std::make_shared<PreparedTooth::Content>(
       PreparedTooth::Content{std::move(shared_models), options, std::move(record), input, place,
                              std::move(taken.kept.old_vertices), std::move(taken.kept.old_triangles), std::move(crown),
                              root.prediction.frame.frame, std::move(root.prediction.tooth), std::move(root.surface)});
@@ -177,8 +177,9 @@ const CompletionRecord& PreparedTooth::record() const { return content_->record;
 
 const CompleteOptions& PreparedTooth::options() const { return content_->options; }
 
-PreparedTooth prepare_tooth(const TriangleMesh& crown, const CompletionModels& models, const CompleteOptions& options,
-                            const ProgressCallback& progress) {
+std::shared_ptr<PreparedTooth::Content> prepared_content(const TriangleMesh& crown, const CompletionModels& models,
+                                                         const CompleteOptions& options,
+                                                         const ProgressCallback& progress) {
   require_options_in_range(options);
   return with_threads(options.threads, [&] {
     StageClock clock(progress);
@@ -191,8 +192,13 @@ PreparedTooth prepare_tooth(const TriangleMesh& crown, const CompletionModels& m
     const auto hint = [&] {
       return hint_at_options(crown_at_work, place, *content_of(models), options, kept_vertices);
     };
-    return PreparedTooth(letting_callbacks_throw([&] { return hinting(work, hint); }));
+    return letting_callbacks_throw([&] { return hinting(work, hint); });
   });
+}
+
+PreparedTooth prepare_tooth(const TriangleMesh& crown, const CompletionModels& models, const CompleteOptions& options,
+                            const ProgressCallback& progress) {
+  return PreparedTooth(prepared_content(crown, models, options, progress));
 }
 
 }  // namespace rhizodont

@@ -14,6 +14,7 @@
 #include <tbb/task_arena.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,15 @@ struct PreparedTooth::Content {
 
 /// Throws UsageError, with a sentence, for options out of range.
 void require_options_in_range(const CompleteOptions& options);
+
+/// `prepare_tooth`, its parts open: the caller's alone, who may change them.
+std::shared_ptr<PreparedTooth::Content> prepared_content(const TriangleMesh& crown, const CompletionModels& models,
+                                                         const CompleteOptions& options,
+                                                         const ProgressCallback& progress = {});
+
+/// `finish_tooth` of these parts.
+CompletedTooth finished_tooth(const PreparedTooth::Content& content, const RootSteering& steering,
+                              std::optional<double> transition, const ProgressCallback& progress);
 
 /// The sentence on options that may help a crown that was refused with these (`way_out`). @param crown_at_work the
 /// input at the workplace @param kept_vertices what was kept of it, as far as that is known, with the input's numbers

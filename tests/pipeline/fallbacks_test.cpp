@@ -4,19 +4,25 @@
 // What is done where the plain way leads nowhere, each once, and that the record says so. Crowns that are none come
 // this far with a models' folder that has nothing to judge crowns by.
 
+#include "base/float_bits.hpp"
 #include "common/temporary_folder.hpp"
+#include "guiding/guiding_cloud.hpp"
+#include "guiding/guiding_surface.hpp"
 #include "mesh/geometry.hpp"
+#include "pipeline/prepared_tooth.hpp"
 #include "pipeline/product_models.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "rhizodont/tooth_file.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 namespace rhizodont {
 namespace {
@@ -107,6 +113,45 @@ TEST(Fallbacks, WhereNoRootFitsAtAllThereIsNoResult) {
   } catch (const NoResultError& error) {
     EXPECT_EQ(std::string(error.what()).rfind("No root can be predicted from this crown", 0), 0U) << error.what();
   }
+}
+
+TEST(Fallbacks, WhereFloatsLieTooFarApartNewVerticesHaveDoublePrecision) {
+  // A kilometre out on each axis floats are 0.06 to 0.12 mm apart: the crown may be as coarse, the root cuts itself.
+  TriangleMesh crown = load_mesh(source_folder / "samples/crown_34.ply").mesh;
+  for (Point& p : crown.vertices) p = nearest_float(p + Point::Constant(1048576));
+  ASSERT_TRUE(coordinates_fit_float(crown));
+  const CompletedTooth tooth = complete_tooth(crown, test::models(), test::for_tooth(34));
+  EXPECT_EQ(warned(tooth.record, "The crown lies so far from the origin that single precision is too coarse"), 1);
+  EXPECT_FALSE(coordinates_fit_float(tooth.mesh));
+  CheckOptions exact;
+  exact.compare_as_float = false;
+  EXPECT_TRUE(check(crown, tooth.mesh, exact).holds());
+  EXPECT_THROW(require_format_holds(tooth, "tooth.stl"), NoResultError);
+  EXPECT_NO_THROW(require_format_holds(tooth, "tooth.ply"));
+}
+
+TEST(Fallbacks, WhereTheSurfaceCannotBeDrawnOntoTheCrownTheJointIsWarnedOf) {
+  CompleteOptions options = test::for_tooth(34);
+  options.e = 1;
+  const auto prepared =
+      prepared_content(load_mesh(source_folder / "samples/crown_34.ply").mesh, models_without_likeness(), options);
+  PreparedTooth::Content& content = *prepared;
+  const CompletionRecord fitted = finished_tooth(content, {}, {}, {}).record;
+  ASSERT_FALSE(content.surface.fit.undone);
+  // What `fit_to_crown` leaves where it is undone: the surface as it came.
+  const GuidingCloud cloud = assemble_guiding_cloud(content.crown, content.predicted.cloud);
+  GuidingSurfaceOptions as_it_comes;
+  as_it_comes.isosurface.e = options.e;
+  const std::span<const Point> seeds(cloud.samples.points.data(), static_cast<std::size_t>(cloud.crown_samples));
+  content.surface.mesh = guiding_surface(cloud.samples, cloud.confidence, seeds, as_it_comes).surface.mesh;
+  content.surface.fit = {};
+  content.surface.fit.undone = true;
+  const CompletionRecord record = finished_tooth(content, {}, {}, {}).record;
+  const std::string words = "Drawn onto the crown the guiding surface would have met itself";
+  EXPECT_EQ(warned(fitted, words), 0);
+  EXPECT_EQ(warned(record, words), 1);
+  EXPECT_GT(record.joining.guiding_distance_max_mm, fitted.joining.guiding_distance_max_mm);
+  EXPECT_TRUE(record.promises.holds());
 }
 
 TEST(Fallbacks, ModelsWithoutANetworkForSkirtsRefuseToLookForOne) {
