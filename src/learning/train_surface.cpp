@@ -201,6 +201,7 @@ SurfaceTrainingResult train_surface(const SurfaceProvider& provider, const Surfa
   SurfaceTraining training(provider, options);
   TrainingTask task;
   note_surface_shape(options.shape, task.identity);
+  note_surface_counts(options.shape, task.notes);
   task.notes["training.pool"] = std::to_string(options.pool);
   task.weight_type = TensorType::float32;
   task.lower_is_better = false;

@@ -25,7 +25,21 @@ constexpr std::array<std::pair<const char*, bool SurfaceShape::*>, 3> surface_in
     {"surroundings", &SurfaceShape::surroundings},
 }};
 
+std::array<std::pair<const char*, int>, 2> counts_of(const SurfaceShape& shape) {
+  return {{{"features", feature_count(shape)}, {"outputs", surface_output_count}}};
+}
+
 }  // namespace
+
+int feature_count(const SurfaceShape& shape) {
+  return (shape.position ? SurfaceFeature::normal - SurfaceFeature::position : 0) +
+         (shape.surroundings ? SurfaceFeature::signature - SurfaceFeature::normal : 0) +
+         (shape.signature ? surface_feature_count - SurfaceFeature::signature : 0);
+}
+
+void note_surface_counts(const SurfaceShape& shape, std::map<std::string, std::string>& metadata) {
+  for (const auto& [name, count] : counts_of(shape)) metadata[name] = std::to_string(count);
+}
 
 void note_surface_shape(const SurfaceShape& shape, std::map<std::string, std::string>& metadata) {
   metadata["format"] = surface_format;
@@ -58,6 +72,10 @@ SurfaceShape read_surface_shape(const std::map<std::string, std::string>& metada
   } catch (const UsageError& error) {
     throw InputError(error.what());
   }
+  for (const auto& [name, count] : counts_of(shape))
+    if (const std::string text = text_of(name); !text.empty() && text != std::to_string(count))
+      throw InputError("The weights are of a network with " + text + " " + name + ", here it has " +
+                       std::to_string(count) + ".");
   return shape;
 }
 

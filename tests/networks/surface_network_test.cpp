@@ -90,6 +90,25 @@ TEST(SurfaceNetwork, RefusesOtherWeights) {
   bad = good;
   bad.metadata["input.signature"] = "no";  // the first layer has more columns then
   refused(bad);
+  for (const char* count : {"features", "outputs"}) {
+    bad = good;
+    bad.metadata[count] = "17";
+    refused(bad);
+  }
+}
+
+TEST(SurfaceNetwork, ReadsWeightsThatStateTheirCountsAndSuchThatDoNot) {
+  const test::TemporaryFolder folder;
+  TensorFile file = read_safetensors(testing::model_file("skirt.safetensors"));
+  SurfaceShape shape = read_surface_shape(file.metadata);
+  EXPECT_EQ(feature_count(shape), surface_feature_count);
+  note_surface_counts(shape, file.metadata);
+  EXPECT_EQ(file.metadata.at("features"), "26");
+  EXPECT_EQ(file.metadata.at("outputs"), "1");
+  write_safetensors(folder.path() / "weights.safetensors", file);
+  EXPECT_NO_THROW(SurfaceNetwork::load(folder.path() / "weights.safetensors"));
+  shape.signature = false;
+  EXPECT_EQ(feature_count(shape), 10);
 }
 
 }  // namespace
