@@ -4,6 +4,7 @@
 // P. Liepa, "Filling holes in meshes", Symposium on Geometry Processing 2003, as implemented in CGAL.
 
 #include "fusion/fill_holes.hpp"
+#include "mesh/diagnosis.hpp"
 
 #include "mesh/surface_mesh.hpp"
 #include "rhizodont/error.hpp"
@@ -12,6 +13,7 @@
 #include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 
 namespace rhizodont {
@@ -33,6 +35,7 @@ std::vector<std::int64_t> hole_vertices(const SurfaceMesh& mesh, SurfaceMesh::Ha
 }  // namespace
 
 FilledMesh fill_holes(const TriangleMesh& mesh) {
+  assert(diagnose(mesh).is_oriented_manifold());
   SurfaceMesh surface = to_surface_mesh(mesh);
   std::vector<SurfaceMesh::Halfedge_index> borders;
   processing::extract_boundary_cycles(surface, std::back_inserter(borders));

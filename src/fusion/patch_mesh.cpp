@@ -6,6 +6,7 @@
 #include "fusion/patch_mesh.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <unordered_map>
 
 namespace rhizodont {
@@ -68,6 +69,7 @@ void PatchMesh::link(int g, int h) {
 }
 
 void PatchMesh::flip(int h) {
+  assert(can_flip(h));
   // (a, b, c) and (b, a, d) become (d, c, a) and (c, d, b), with the edge c - d in the place of a - b.
   const int g = opposite(h);
   const int a = from(h), b = to(h), c = apex(h), d = apex(g);
@@ -156,6 +158,7 @@ bool PatchMesh::can_collapse(int h) const {
 }
 
 void PatchMesh::collapse(int h) {
+  assert(can_collapse(h));
   const int g = opposite(h);
   const int u = from(h), v = to(h), c = apex(h), d = apex(g);
   std::vector<int> leaving_u;

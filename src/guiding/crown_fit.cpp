@@ -6,6 +6,7 @@
 // M. C. Rivara, "Algorithms for refining triangular grids suitable for adaptive and multigrid techniques", 1984.
 
 #include "guiding/crown_fit.hpp"
+#include "mesh/diagnosis.hpp"
 
 #include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
@@ -19,6 +20,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <optional>
 #include <tuple>
@@ -284,6 +286,7 @@ void require_in_range(const CrownFitOptions& options) {
 }  // namespace
 
 CrownFit fit_to_crown(TriangleMesh& surface, const PreparedCrown& crown, const CrownFitOptions& options) {
+  assert(diagnose(surface).is_closed_manifold());
   require_in_range(options);
   const CrownPlaces drawn_to(crown, options.reach);
   const TriangleMesh before = surface;

@@ -5,6 +5,7 @@
 // Approximating isosurfaces by guaranteed-quality triangular meshes, 2020.
 #include "isosurface/goldberg.hpp"
 
+#include <cassert>
 #include <cmath>
 
 namespace rhizodont {
@@ -36,6 +37,7 @@ bool GoldbergTiling::in_range(const Point& p) const {
 }
 
 LatticeVertex GoldbergTiling::nearest(const Point& p) const {
+  assert(in_range(p));
   const Eigen::Array3d x = (to_lattice_ * (p - origin_)).array();
   const Eigen::Array3d even = 2.0 * (0.5 * x).round(), odd = 2.0 * (0.5 * (x - 1.0)).round() + 1.0;
   const Eigen::Array3d best = (x - even).square().sum() <= (x - odd).square().sum() ? even : odd;

@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cassert>
 
 namespace rhizodont {
 
@@ -48,6 +49,7 @@ std::vector<BorderPiece> border_pieces(const TriangleMesh& mesh) {
 }
 
 std::size_t base_piece(const std::vector<BorderPiece>& pieces) {
+  assert(!pieces.empty());
   const auto largest = std::max_element(pieces.begin(), pieces.end(), [](const BorderPiece& x, const BorderPiece& y) {
     return x.area_vector.squaredNorm() < y.area_vector.squaredNorm();
   });

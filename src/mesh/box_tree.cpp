@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
+#include <cmath>
 
 namespace rhizodont {
 namespace {
@@ -23,6 +25,8 @@ void ClosedBox::extend(const ClosedBox& other) {
 }
 
 BoxTree::BoxTree(const std::vector<ClosedBox>& boxes) : number_(boxes.size()) {
+  assert(boxes.size() < std::size_t{1} << 31);
+  assert(std::all_of(boxes.begin(), boxes.end(), [](const ClosedBox& box) { return std::isfinite(box.widest()); }));
   if (boxes.empty()) return;
   leaves_ = std::bit_ceil((boxes.size() + boxes_per_leaf - 1) / boxes_per_leaf);
   std::vector<Middle> middles(boxes.size());

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "mesh/cross_sections.hpp"
+#include "mesh/diagnosis.hpp"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -31,6 +33,7 @@ double swept(const std::array<Point, 3>& corners, const std::array<double, 3>& h
 
 std::vector<double> cross_section_areas(const TriangleMesh& closed_surface, const Eigen::Vector3d& axis, double from,
                                         double step) {
+  assert(diagnose(closed_surface).is_closed_manifold());
   double lowest = std::numeric_limits<double>::infinity();
   for (const Triangle& t : closed_surface.triangles)
     for (const int v : t) lowest = std::min(lowest, closed_surface.vertices[static_cast<std::size_t>(v)].dot(axis));

@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -146,6 +147,9 @@ std::optional<std::vector<Triangle>> cut_inside(const std::vector<Point2>& point
 }  // namespace
 
 CutPolygon cut_polygon(const std::vector<Point>& vertices, std::span<const std::int32_t> corners) {
+  assert(std::all_of(corners.begin(), corners.end(), [&](std::int32_t v) {
+    return v >= 0 && static_cast<std::size_t>(v) < vertices.size() && vertices[static_cast<std::size_t>(v)].allFinite();
+  }));
   const auto points = seen_along_axis(vertices, corners);
   if (!points || fan_is_right(*points)) return {fan_of(corners), PolygonCut::fan};
   if (auto triangles = cut_inside(*points, corners)) return {std::move(*triangles), PolygonCut::constrained};

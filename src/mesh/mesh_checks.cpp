@@ -8,6 +8,17 @@
 
 namespace rhizodont {
 
+bool has_valid_indices(const TriangleMesh& mesh) {
+  const auto count = static_cast<std::int64_t>(mesh.vertices.size());
+  return std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& triangle) {
+    return std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t v) { return v >= 0 && v < count; });
+  });
+}
+
+bool is_finite(std::span<const Point> points) {
+  return std::all_of(points.begin(), points.end(), [](const Point& p) { return p.allFinite(); });
+}
+
 void require_valid_indices(const TriangleMesh& mesh) {
   std::vector<std::int64_t> bad;
   const auto count = static_cast<std::int64_t>(mesh.vertices.size());

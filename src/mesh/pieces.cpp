@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace rhizodont {
@@ -103,6 +104,7 @@ std::size_t Pieces::count(PieceKind kind) const {
 }
 
 Pieces sort_pieces(const TriangleMesh& mesh, const PieceOptions& options) {
+  assert(can_be_sorted(mesh));
   require_in_range(options);
   const ConnectedComponents components = connected_components(mesh);
   Pieces pieces{components.of_triangle, {}};

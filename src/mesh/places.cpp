@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "mesh/places.hpp"
+#include "mesh/mesh_checks.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <numeric>
 
 namespace rhizodont {
 
 std::vector<int> first_at_place(const std::vector<Point>& points) {
+  assert(is_finite(points));
   std::vector<int> order(points.size());
   std::iota(order.begin(), order.end(), 0);
   const auto at = [&](int v) -> const Point& { return points[static_cast<std::size_t>(v)]; };

@@ -5,6 +5,7 @@
 //   matched and merged ("zipped"). Here only vertices that lie opposite to each other are.
 
 #include "mesh/seams.hpp"
+#include "mesh/mesh_checks.hpp"
 
 #include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
@@ -13,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -103,6 +105,7 @@ void require_in_range(const SeamOptions& options) {
 }
 
 Seams find_seams(const TriangleMesh& mesh, const SeamOptions& options) {
+  assert(has_valid_indices(mesh) && is_finite(mesh.vertices));
   require_in_range(options);
   const Border border = find_border(mesh);
   Seams seams;

@@ -7,6 +7,7 @@
 //   independent loops through the tree's root; none of them cuts the surface in two.
 
 #include "mesh/tunnels.hpp"
+#include "mesh/diagnosis.hpp"
 
 #include "base/disjoint_sets.hpp"
 #include "mesh/adjacency.hpp"
@@ -15,6 +16,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <numeric>
 #include <queue>
@@ -156,6 +158,7 @@ class LoopFinder {
 }  // namespace
 
 std::vector<int> short_handle_loop(const TriangleMesh& mesh) {
+  assert(diagnose(mesh).is_oriented_manifold());
   if (mesh.triangles.empty() || handle_count(mesh) <= 0) return {};
   constexpr std::size_t followed = 3;  // loops of the first basis
   constexpr std::size_t starts = 4;    // places on each

@@ -5,6 +5,8 @@
 // line, is the centred B-spline of degree 2p + 1 at their shift; derivatives of the factors become differences.
 #include "poisson/bspline.hpp"
 
+#include <cassert>
+
 namespace rhizodont {
 namespace {
 
@@ -21,6 +23,7 @@ double centred_spline(int degree, double x) {
 }  // namespace
 
 SplineTables spline_tables(int degree) {
+  assert(degree == 1 || degree == 2);
   SplineTables tables{};
   const int product = 2 * degree + 1;
   for (int k = -2; k <= 2; ++k) {

@@ -1,11 +1,13 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "poisson/neighbours.hpp"
+#include "mesh/mesh_checks.hpp"
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <nanoflann.hpp>
 
@@ -66,6 +68,7 @@ void for_each_point(std::size_t count, const Tree& tree, const Body& body) {
 }  // namespace
 
 Neighbours nearest_neighbours(std::span<const Point> points, std::size_t count) {
+  assert(points.size() >= 2 && is_finite(points));
   Neighbours result;
   result.count = std::min(count, points.size() - 1);
   result.indices.resize(points.size() * result.count);
@@ -81,6 +84,7 @@ Neighbours nearest_neighbours(std::span<const Point> points, std::size_t count) 
 
 void visit_neighbours(std::span<const Point> points, std::size_t few, std::size_t many,
                       const std::function<bool(std::size_t, std::span<const int>, std::span<const double>)>& visit) {
+  assert(points.size() >= 2 && is_finite(points));
   few = std::min(few, points.size() - 1);
   many = std::min(many, points.size() - 1);
   const Cloud cloud{points};

@@ -8,6 +8,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "poisson/bspline.hpp"
@@ -144,6 +145,7 @@ std::array<int, 3> cell_of(const SplineLevel& level, const Point& p) {
 }
 
 SplinePosition locate(const SplineLevel& level, const Point& p) {
+  assert(p.allFinite());
   SplinePosition at{};
   at.cell = cell_of(level, p);
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "poisson/surface_shares.hpp"
 
+#include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -10,6 +12,9 @@
 namespace rhizodont {
 
 std::vector<double> surface_shares(const OrientedPoints& samples, int neighbours) {
+  assert(neighbours >= 3 && samples.points.size() >= static_cast<std::size_t>(neighbours) + 2);
+  assert(std::all_of(samples.normals.begin(), samples.normals.end(),
+                     [](const Eigen::Vector3d& n) { return std::abs(n.squaredNorm() - 1) < 1e-6; }));
   // On a thin sheet every second neighbour lies on the other side: where the nearest do not suffice, twice as many are
   // looked up.
   const auto few = static_cast<std::size_t>(neighbours) + 1;

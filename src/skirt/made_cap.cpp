@@ -7,6 +7,7 @@
 //   a centre; and extrusions, whose walls are rows of as many quads as the border has edges.
 
 #include "skirt/made_cap.hpp"
+#include "mesh/diagnosis.hpp"
 
 #include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
@@ -14,6 +15,7 @@
 #include "skirt/cap.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -439,6 +441,7 @@ void require_in_range(const MadeCapOptions& options) {
 }  // namespace
 
 std::optional<std::vector<bool>> find_made_cap(const TriangleMesh& closed_crown, const MadeCapOptions& options) {
+  assert(diagnose(closed_crown).is_closed_manifold());
   require_in_range(options);
   const Closed crown(closed_crown);
   Mask best;

@@ -5,6 +5,7 @@
 // 45(2), 2013: the defects. Handles are found by letting the surface grow from its inside towards the border: genus
 // never falls as a surface grows, so that the vertex that closes a handle is found by bisection.
 #include "skirt/ragged_part.hpp"
+#include "mesh/mesh_checks.hpp"
 
 #include "base/disjoint_sets.hpp"
 #include "base/option_range.hpp"
@@ -21,6 +22,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -233,6 +235,7 @@ std::vector<bool> triangles_without_slits(const TriangleMesh& open_crown, const 
 }
 
 std::vector<bool> sound_triangles(const TriangleMesh& crown) {
+  assert(has_valid_indices(crown) && is_finite(crown.vertices));
   std::vector<bool> sound(crown.triangles.size(), true);
   for (const int t : diagnose(crown).duplicate_triangles) sound[at(t)] = false;
   for (;;) {

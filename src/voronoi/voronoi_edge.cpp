@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 namespace rhizodont {
@@ -24,6 +25,8 @@ double turn(const Eigen::Vector3d& along, const Eigen::Vector3d& p, const Eigen:
 }  // namespace
 
 VoronoiEdge voronoi_edge(const std::vector<Point>& sites, const Triangle& triangle) {
+  assert(std::all_of(triangle.begin(), triangle.end(),
+                     [&](std::int32_t v) { return v >= 0 && static_cast<std::size_t>(v) < sites.size(); }));
   const auto site = [&](std::int32_t i) -> const Point& { return sites[static_cast<std::size_t>(i)]; };
   const Point& a = site(triangle[0]);
   const Eigen::Vector3d u = site(triangle[1]) - a;
