@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Proves the order of the rooms: check_rooms.py [--self-test]. Every include between rooms of src/ is in the room's USES
 and goes to a room that stands before it in src/CMakeLists.txt; the table of rooms in docs/architecture.md says the same as
-USES; no type is defined twice at namespace scope, which the linker would not notice. Types in anonymous namespaces and
-inside of others do not count. Ends with 1 where that does not hold. --self-test plants each of these faults in a copy and
-ends with 1 if one is not found."""
+USES; the programs include no room of geometry; no type is defined twice at namespace scope, which the linker would not
+notice. Types in anonymous namespaces and inside of others do not count. Ends with 1 where that does not hold. --self-test
+plants each of these faults in a copy and ends with 1 if one is not found."""
 
 import collections
 import pathlib
@@ -17,6 +17,9 @@ import tempfile
 from check_lengths import OPAQUE, blank, closing
 
 DIRECTIVE = re.compile(r'^[ \t]*#[^\n]*(\\\n[^\n]*)*', re.M)
+# What the programs leave to the rooms above these.
+GEOMETRY = {'mesh', 'operators', 'completion', 'skirt', 'segment', 'intake', 'poisson', 'isosurface', 'guiding', 'voronoi',
+            'fusion'}
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"', re.M)
 NAMESPACE = re.compile(r'^(?:inline\s+)?namespace\b\s*([\w:\s]*)$')
 TYPE = re.compile(r'^(?:template\s*<.*>\s*)?(?:struct|class|union|enum(?:\s+(?:class|struct))?)\b\s*'
@@ -107,6 +110,15 @@ def faults_of_includes(root, rooms, uses):
                 yield f'{where}, but {other} is not in the USES of {room}'
 
 
+def faults_of_programs(root):
+    for file in source_files(root / 'apps'):
+        text = file.read_text(encoding='utf-8')
+        for match in INCLUDE.finditer(text):
+            if match.group(1).split('/')[0] in GEOMETRY:
+                yield (f'{file.relative_to(root)}:{text.count(chr(10), 0, match.start()) + 1}: includes {match.group(1)}, '
+                       'but programs do no geometry')
+
+
 def faults_of_names(root):
     places = collections.defaultdict(list)
     for folder in ('include', 'src', 'apps'):
@@ -123,7 +135,8 @@ def faults_of_names(root):
 def faults(root):
     rooms = rooms_in_order(root)
     uses = {room: used_rooms(root, room) for room in rooms}
-    return [*faults_of_rooms(root, rooms, uses), *faults_of_includes(root, rooms, uses), *faults_of_names(root)]
+    return [*faults_of_rooms(root, rooms, uses), *faults_of_includes(root, rooms, uses), *faults_of_programs(root),
+            *faults_of_names(root)]
 
 
 def planted_faults(root):
@@ -147,6 +160,8 @@ def planted_faults(root):
     yield ('an enumeration that a public header has', 'src/skirt/planted.hpp',
            'namespace rhizodont {\nvoid f(struct Joining& j) { struct Point {}; }\nenum class CapHandling { drop };\n}\n',
            'rhizodont::CapHandling is defined 2 times')
+    yield ('geometry in a program', 'apps/rhizodont/planted.cpp', '#include "mesh/geometry.hpp"\n',
+           'programs do no geometry')
     yield ('a use that goes upward', 'src/mesh/CMakeLists.txt',
            text('src/mesh/CMakeLists.txt').replace('USES base', 'USES base fusion', 1),
            'mesh uses fusion')
