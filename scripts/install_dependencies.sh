@@ -16,7 +16,7 @@ case ${1:-all} in
   program) ;;
   all)
     packages+=(
-      clang-format libgtest-dev libtorch-dev libgloo-dev libopenblas0-openmp
+      clang-format clang-tidy libgtest-dev libtorch-dev libgloo-dev libopenblas0-openmp
       python3-numpy python3-scipy python3-open3d python3-jsonschema
       slurmctld slurmd slurm-client munge
     )

@@ -2,7 +2,7 @@
 # SPDX-FileCopyrightText: Rhizodont contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
 
-# Builds everything with warnings as errors and runs all tests.
+# Builds everything with warnings as errors, has clang-tidy look at what has changed, and runs all tests.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 scripts/install_dependencies.sh
@@ -12,6 +12,7 @@ git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
 /usr/bin/python3 scripts/check_rooms.py
 cmake -S . -B build -G Ninja -DRHIZODONT_WERROR=ON -DRHIZODONT_TESTS=ON -DRHIZODONT_BENCH=ON -DRHIZODONT_TRAINING=ON
 cmake --build build
+scripts/tidy_changed.sh
 rm -rf build/test_results
 GTEST_OUTPUT="xml:$PWD/build/test_results/" ctest --test-dir build --output-on-failure --no-tests=error -j 2
 /usr/bin/python3 scripts/check_skipped.py build/test_results
