@@ -3,13 +3,12 @@
 
 // Laying mean crowns on crowns: a search over starting rotations, then trimmed two-way iterative closest points with
 // normals. P. J. Besl, N. D. McKay, "A method for registration of 3-D shapes", 1992; D. Chetverikov, D. Stepanov,
-// P. Krsek, "Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm", 2005;
-// similarity from pairs: S. Umeyama, "Least-squares estimation of transformation parameters between two point
-// patterns", 1991.
+// P. Krsek, "Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm", 2005.
 #include "completion/registration.hpp"
 #include "base/option_range.hpp"
 #include "completion/lay_teeth.hpp"
 #include "completion/oriented_clouds.hpp"
+#include "completion/similarity.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
@@ -17,7 +16,6 @@
 
 #include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -44,12 +42,6 @@ OrientedCloud thinned(const OrientedCloud& cloud, Eigen::Index count) {
   }
   return result;
 }
-
-struct Similarity {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  double scale = 1;
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  // to = scale * rotation * from + shift
-};
 
 OrientedCloud moved(const OrientedCloud& cloud, const Similarity& by) {
   OrientedCloud result;
@@ -82,25 +74,6 @@ struct Trim {
 double two_way_distance(const CloudFeatures& crown, const CloudFeatures& mean, const Trim& trim) {
   return 0.5 * (trimmed_mean_distance(nearest(crown, mean).squared, trim.crown) +
                 trimmed_mean_distance(nearest(mean, crown).squared, trim.mean));
-}
-
-struct ScaleRange {
-  double low, high;
-};
-
-// Umeyama's closed form for pairs (from, to).
-Similarity similarity_of_pairs(const Matrix3X& from, const Matrix3X& to, const ScaleRange& range) {
-  const Eigen::Vector3d mean_from = from.rowwise().mean(), mean_to = to.rowwise().mean();
-  const Matrix3X a = from.colwise() - mean_from, b = to.colwise() - mean_to;
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(b * a.transpose(), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Vector3d sign(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1);
-  Similarity result;
-  result.rotation = svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
-  const double spread = a.squaredNorm();
-  result.scale = spread > 0 ? svd.singularValues().dot(sign) / spread : 1;
-  result.scale = std::clamp(result.scale, range.low, range.high);
-  result.shift = mean_to - result.scale * result.rotation * mean_from;
-  return result;
 }
 
 Similarity refined(const OrientedCloud& crown, const OrientedCloud& mean, Similarity at,

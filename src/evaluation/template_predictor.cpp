@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// P. Besl, N. McKay, "A method for registration of 3-D shapes", 1992; S. Umeyama, "Least-squares estimation of
-// transformation parameters between two point patterns", 1991; D. Chetverikov et al., "Robust Euclidean alignment of 3D
-// point sets: the trimmed iterative closest point algorithm", 2005.
+// P. Besl, N. McKay, "A method for registration of 3-D shapes", 1992; D. Chetverikov et al., "Robust Euclidean
+// alignment of 3D point sets: the trimmed iterative closest point algorithm", 2005.
 #include "evaluation/template_predictor.hpp"
 
 #include "base/option_range.hpp"
+#include "completion/similarity.hpp"
 #include "evaluation/root_figures.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
@@ -74,7 +74,7 @@ TriangleMesh mirrored(TriangleMesh mesh) {
   return flipped(mesh);
 }
 
-using Similarity = Eigen::Transform<double, 3, Eigen::Affine>;
+using Transform = Eigen::Transform<double, 3, Eigen::Affine>;
 
 /// Both crowns as points, each with an index for the nearest.
 struct Registration {
@@ -103,7 +103,7 @@ struct Pairs {
 /// The template's crown may reach below the scanned one and be worn or shaped otherwise: its points near and below the
 /// border and the farthest of the rest are left out. All of the scanned crown's points take part, also with the
 /// template's root: a scan may reach below the cemento-enamel junction.
-Pairs find_pairs(const Registration& r, const Similarity& similarity, double scale) {
+Pairs find_pairs(const Registration& r, const Transform& similarity, double scale) {
   Pairs pairs;
   std::vector<std::pair<double, std::pair<std::size_t, int>>> near;
   for (std::size_t i = 0; i < r.source.size(); ++i) {
@@ -118,7 +118,7 @@ Pairs find_pairs(const Registration& r, const Similarity& similarity, double sca
     pairs.from.push_back(r.source.points()[ids.first]);
     pairs.to.push_back(r.target.points()[static_cast<std::size_t>(ids.second)]);
   }
-  const Similarity back = similarity.inverse();
+  const Transform back = similarity.inverse();
   double sum = 0;
   for (const Point& p : r.target.points()) {
     const NearVertex hit = r.whole_source.nearest(back * p);  // a similarity keeps who is nearest
@@ -137,20 +137,18 @@ Eigen::Matrix3Xd as_columns(const std::vector<Point>& points) {
 }
 
 struct Fit {
-  Similarity similarity = Similarity::Identity();
+  Transform similarity = Transform::Identity();
   double scale = 1;
   double mean_distance = std::numeric_limits<double>::infinity();  ///< mm
 };
 
 /// Least squares over the pairs; the scale changes by at most `largest_scale_step`.
 void improve(const Pairs& pairs, double largest_scale_step, Fit& fit) {
-  const Eigen::Matrix3Xd from = as_columns(pairs.from), to = as_columns(pairs.to);
-  const Eigen::Matrix4d best = Eigen::umeyama(from, to, true);
-  const double wanted = std::cbrt(best.topLeftCorner<3, 3>().determinant());
-  const Eigen::Matrix3d rotation = best.topLeftCorner<3, 3>() / wanted;
-  fit.scale = std::clamp(wanted, fit.scale / largest_scale_step, fit.scale * largest_scale_step);
-  fit.similarity.linear() = fit.scale * rotation;
-  fit.similarity.translation() = to.rowwise().mean() - fit.similarity.linear() * from.rowwise().mean();
+  const Similarity best = similarity_of_pairs(as_columns(pairs.from), as_columns(pairs.to),
+                                              {fit.scale / largest_scale_step, fit.scale * largest_scale_step});
+  fit.scale = best.scale;
+  fit.similarity.linear() = best.scale * best.rotation;
+  fit.similarity.translation() = best.shift;
 }
 
 Fit fit_from(const Registration& r, const Eigen::Matrix3d& rotation) {
