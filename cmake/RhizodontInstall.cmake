@@ -4,6 +4,7 @@
 # One shared library with all rooms: what `find_package(Rhizodont)` gives. Its public headers need Eigen alone; CGAL
 # and the others stay inside.
 include(GNUInstallDirs)
+include(GenerateExportHeader)
 include(CMakePackageConfigHelpers)
 
 get_property(rooms GLOBAL PROPERTY RHIZODONT_ROOMS)
@@ -15,6 +16,8 @@ add_library(rhizodont_library SHARED ${room_objects})
 set_target_properties(rhizodont_library PROPERTIES
   OUTPUT_NAME rhizodont EXPORT_NAME rhizodont
   VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+generate_export_header(rhizodont_library BASE_NAME RHIZODONT
+  EXPORT_FILE_NAME ${CMAKE_CURRENT_BINARY_DIR}/include/rhizodont/export.hpp)
 target_link_libraries(rhizodont_library
   PUBLIC Eigen3::Eigen
   PRIVATE ${rooms})

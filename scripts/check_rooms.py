@@ -23,7 +23,7 @@ GEOMETRY = {'mesh', 'operators', 'completion', 'skirt', 'segment', 'intake', 'po
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]+"([^"]+)"', re.M)
 NAMESPACE = re.compile(r'^(?:inline\s+)?namespace\b\s*([\w:\s]*)$')
 TYPE = re.compile(r'^(?:template\s*<.*>\s*)?(?:struct|class|union|enum(?:\s+(?:class|struct))?)\b\s*'
-                  r'(?:\[\[.*?\]\]\s*|alignas\s*\([^)]*\)\s*)*([\w:]*(?:\s*<[^{]*>)?)\s*(?:final\s*)?(?::(?!:).*)?$', re.S)
+                  r'(?:\[\[.*?\]\]\s*|alignas\s*\([^)]*\)\s*|RHIZODONT_EXPORT\b\s*)*([\w:]*(?:\s*<[^{]*>)?)\s*(?:final\s*)?(?::(?!:).*)?$', re.S)
 
 
 def defined_types(text):

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rhizodont/complete.hpp"
+#include "rhizodont/export.hpp"
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/models.hpp"
 
@@ -32,7 +33,7 @@ struct ArchOptions {
   double clearance_mm = 0.5;        ///< [0, 3]
 
   /// What crowns cut from a scan by their labels need: skirts dropped, defects mended.
-  static CompleteOptions skirt_and_repair();
+  RHIZODONT_EXPORT static CompleteOptions skirt_and_repair();
 };
 
 /// One tooth of a scan.
@@ -63,7 +64,7 @@ struct LongAxes {
 
 /// The crown's axis is its growth axis, up to its highest point; the root's goes to the mean of what lies in the lowest
 /// third of the root, so that several roots count together.
-LongAxes long_axes(const CompletedTooth& tooth);
+RHIZODONT_EXPORT LongAxes long_axes(const CompletedTooth& tooth);
 
 /// How near two teeth come, mm: exact distances of their triangles, negative (minus a depth) where they run into each
 /// other. A root begins at the crown's lowest point, as its length does; what closes a crown above that, where the scan
@@ -76,7 +77,7 @@ struct ToothClearance {
   std::optional<double> root_crown, crown_root;  ///< the first's root and the second's crown, and the other way
 
   /// The smallest in which a root has a part.
-  std::optional<double> of_roots() const;
+  RHIZODONT_EXPORT std::optional<double> of_roots() const;
 };
 
 struct CompletedArch {
@@ -89,11 +90,11 @@ struct CompletedArch {
   std::vector<std::string> notes;  ///< sentences on the arch as a whole
 
   /// How many teeth have a root.
-  int rooted() const;
+  RHIZODONT_EXPORT int rooted() const;
 };
 
 /// Whether so many labelled teeth, so far across from the first to the last, can be an arch or a part of one.
-bool has_size_of_arch(double millimetres_across, std::size_t teeth);
+RHIZODONT_EXPORT bool has_size_of_arch(double millimetres_across, std::size_t teeth);
 
 /// Called after each tooth: how many are done, of how many, and the last one's number.
 using ArchProgress = std::function<void(int done, int teeth, int fdi)>;
@@ -105,7 +106,7 @@ using ArchProgress = std::function<void(int done, int teeth, int fdi)>;
 /// @param progress  never called by two threads at once; what it throws stops the work and comes through
 /// Throws InputError for a scan without teeth, with numbers of no tooth or of another size than an arch, UsageError for
 /// options out of range, for lengths of teeth that are not there, and where the models' folder lacks what is needed.
-CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& models, const ArchOptions& options = {},
-                            const ArchProgress& progress = {});
+RHIZODONT_EXPORT CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& models,
+                                             const ArchOptions& options = {}, const ArchProgress& progress = {});
 
 }  // namespace rhizodont

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/export.hpp"
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/quality.hpp"
 #include "rhizodont/repair_step.hpp"
@@ -35,7 +36,7 @@ struct CheckOptions {
 };
 
 /// Options that excuse what these repairs list, no more; else the defaults.
-CheckOptions allowing_for(const std::vector<RepairStep>& repairs);
+RHIZODONT_EXPORT CheckOptions allowing_for(const std::vector<RepairStep>& repairs);
 
 /// Distances of the crown's vertices (those in use) from the tooth's surface, mm.
 struct CrownDeviation {
@@ -98,6 +99,7 @@ struct CheckReport {
 /// made. Crown triangles with a repeated vertex are left out.
 /// Throws InputError if the crown has no triangle, an index out of range or a coordinate that is not a number,
 /// UsageError for an option out of range; a bad tooth is a failed check, not an error.
-CheckReport check(const TriangleMesh& crown, const TriangleMesh& tooth, const CheckOptions& options = {});
+RHIZODONT_EXPORT CheckReport check(const TriangleMesh& crown, const TriangleMesh& tooth,
+                                   const CheckOptions& options = {});
 
 }  // namespace rhizodont

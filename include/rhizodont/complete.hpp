@@ -3,6 +3,7 @@
 #pragma once
 
 #include "rhizodont/completion_record.hpp"
+#include "rhizodont/export.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/models.hpp"
@@ -61,13 +62,14 @@ using ProgressCallback = std::function<void(std::string_view stage)>;
 /// outside. Throws InputError where the crown cannot be used (empty, not finite, several pieces, inside out,
 /// non-manifold edges, wrong size, cutting itself, closed without a cap), UsageError for options out of range,
 /// NoResultError where no result keeps the promises.
-CompletedTooth complete_tooth(const TriangleMesh& crown, const CompletionModels& models,
-                              const CompleteOptions& options = {}, const ProgressCallback& progress = {});
+RHIZODONT_EXPORT CompletedTooth complete_tooth(const TriangleMesh& crown, const CompletionModels& models,
+                                               const CompleteOptions& options = {},
+                                               const ProgressCallback& progress = {});
 
 /// A crown with all that does not depend on what a user wishes of the root: what is kept of it, which tooth it is, the
 /// predicted tooth, and the guiding surface. Never changes; copies share it, also among threads. Keeps the models
 /// alive.
-class PreparedTooth {
+class RHIZODONT_EXPORT PreparedTooth {
  public:
   /// What is known so far: lengths, joining and promises are those of no tooth yet.
   const CompletionRecord& record() const;
@@ -86,20 +88,23 @@ class PreparedTooth {
 
 /// The first half of `complete_tooth`, which takes most of the time: `options.steering` and `options.transition` are
 /// checked and have no say. Throws as `complete_tooth`.
-PreparedTooth prepare_tooth(const TriangleMesh& crown, const CompletionModels& models,
-                            const CompleteOptions& options = {}, const ProgressCallback& progress = {});
+RHIZODONT_EXPORT PreparedTooth prepare_tooth(const TriangleMesh& crown, const CompletionModels& models,
+                                             const CompleteOptions& options = {},
+                                             const ProgressCallback& progress = {});
 
 /// The second half: the root as wished, joined to the crown and checked. The tooth's options are those it was prepared
 /// with, and these. Throws as `complete_tooth`.
-CompletedTooth finish_tooth(const PreparedTooth& prepared, const RootSteering& steering = {},
-                            std::optional<double> transition = {}, const ProgressCallback& progress = {});
+RHIZODONT_EXPORT CompletedTooth finish_tooth(const PreparedTooth& prepared, const RootSteering& steering = {},
+                                             std::optional<double> transition = {},
+                                             const ProgressCallback& progress = {});
 
 /// Several teeth for one crown that differ in what a crown tells least, the root's length: the expected one first, then
 /// `count` - 1 whose lengths are spread evenly over the interval that holds the truth with 80 % probability, shortest
 /// first. Each is as checked and as exact as that of `complete_tooth`. `count`: 1 to 9; one only where the length is
 /// set by the user. Throws as `complete_tooth`; UsageError for another count or weights without calibration.
-std::vector<CompletedTooth> complete_candidates(const TriangleMesh& crown, const CompletionModels& models, int count,
-                                                const CompleteOptions& options = {},
-                                                const ProgressCallback& progress = {});
+RHIZODONT_EXPORT std::vector<CompletedTooth> complete_candidates(const TriangleMesh& crown,
+                                                                 const CompletionModels& models, int count,
+                                                                 const CompleteOptions& options = {},
+                                                                 const ProgressCallback& progress = {});
 
 }  // namespace rhizodont

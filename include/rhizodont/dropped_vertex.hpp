@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/export.hpp"
+
 #include <string_view>
 
 namespace rhizodont {
@@ -24,6 +26,6 @@ struct DroppedCrownVertex {
 };
 
 /// The reason as reports say it: "pinched border". They name the action in the place of `repair`.
-std::string_view reason_text(DropReason reason);
+RHIZODONT_EXPORT std::string_view reason_text(DropReason reason);
 
 }  // namespace rhizodont

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/export.hpp"
+
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -32,7 +34,7 @@ enum class ElementKind {
 /// Base of all exceptions that the library throws.
 /// `what()` is one sentence that a dental technician understands; `elements()` are the ids concerned, possibly none,
 /// and `kind()` says of what.
-class Error : public std::runtime_error {
+class RHIZODONT_EXPORT Error : public std::runtime_error {
  public:
   Error(ErrorCode code, const std::string& sentence, std::vector<std::int64_t> elements = {},
         ElementKind kind = ElementKind::other)
@@ -49,13 +51,13 @@ class Error : public std::runtime_error {
 };
 
 /// An option or argument is out of its range.
-class UsageError : public Error {
+class RHIZODONT_EXPORT UsageError : public Error {
  public:
   explicit UsageError(const std::string& sentence) : Error(ErrorCode::wrong_usage, sentence) {}
 };
 
 /// The input cannot be used: unreadable, damaged, or not a crown.
-class InputError : public Error {
+class RHIZODONT_EXPORT InputError : public Error {
  public:
   explicit InputError(const std::string& sentence, std::vector<std::int64_t> elements = {},
                       ElementKind kind = ElementKind::other)
@@ -66,13 +68,13 @@ class InputError : public Error {
 };
 
 /// A file cannot be written: no room, no right, no such place. What stood there before stands there still.
-class OutputError : public Error {
+class RHIZODONT_EXPORT OutputError : public Error {
  public:
   explicit OutputError(const std::string& sentence) : Error(ErrorCode::unwritable, sentence) {}
 };
 
 /// The input was understood, but no result keeps the promises.
-class NoResultError : public Error {
+class RHIZODONT_EXPORT NoResultError : public Error {
  public:
   explicit NoResultError(const std::string& sentence, std::vector<std::int64_t> elements = {},
                          ElementKind kind = ElementKind::other)

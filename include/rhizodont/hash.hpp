@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/export.hpp"
+
 #include <string>
 #include <string_view>
 
 namespace rhizodont {
 
 /// SHA-256 in lower-case hex.
-std::string sha256_of_bytes(std::string_view bytes);
+RHIZODONT_EXPORT std::string sha256_of_bytes(std::string_view bytes);
 
 }  // namespace rhizodont

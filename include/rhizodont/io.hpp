@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/export.hpp"
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/output_files.hpp"
 
@@ -58,14 +59,14 @@ struct MeshFile {
 };
 
 /// Number of vertices in the file that was read; for STL, of the mesh.
-std::size_t vertices_in_file(const MeshFile& file);
+RHIZODONT_EXPORT std::size_t vertices_in_file(const MeshFile& file);
 
 /// True if every coordinate, rounded to float, is still the same number.
-bool coordinates_fit_float(const TriangleMesh& mesh);
+RHIZODONT_EXPORT bool coordinates_fit_float(const TriangleMesh& mesh);
 
 /// Rounds all coordinates to float, for formats that hold no more. Returns the farthest that this moved a vertex, in
 /// the mesh's unit. Throws InputError (id of the vertex) for a coordinate beyond all floats.
-double round_to_float(TriangleMesh& mesh);
+RHIZODONT_EXPORT double round_to_float(TriangleMesh& mesh);
 
 /// Reads STL (binary, text), PLY (text, binary of both byte orders; polygons, strips), OBJ, OFF, VTP (text, base64,
 /// raw; zlib, LZ4) and legacy VTK (POLYDATA, text and binary, to version 5). The content says which of them it is, the
@@ -81,31 +82,31 @@ double round_to_float(TriangleMesh& mesh);
 /// Throws InputError, with the line, the element or the byte concerned, if the file is missing, empty, damaged, cut
 /// off, something else than a mesh in one of these formats (then named), holds no triangle, a coordinate that is not a
 /// number, or an index that is not a vertex. What was mended or passed over stands in `notes`.
-MeshFile load_mesh(const std::filesystem::path& path);
+RHIZODONT_EXPORT MeshFile load_mesh(const std::filesystem::path& path);
 
 /// All bytes of a file or a pipe. Throws InputError, without the file's name, if it cannot be read.
-std::string read_file_bytes(const std::filesystem::path& path);
+RHIZODONT_EXPORT std::string read_file_bytes(const std::filesystem::path& path);
 
 /// All bytes that come over standard input. Throws InputError if they cannot be read.
-std::string read_standard_input();
+RHIZODONT_EXPORT std::string read_standard_input();
 
 /// As `load_mesh`, of bytes that are at hand, such as those of standard input. The hint is a file's name, its ending or
 /// a format's name ("crown.stl", ".stl", "stl"). Errors do not name the file.
-MeshFile read_mesh(std::string_view bytes, const std::filesystem::path& name_or_format_hint);
+RHIZODONT_EXPORT MeshFile read_mesh(std::string_view bytes, const std::filesystem::path& name_or_format_hint);
 
 /// Writes .ply (binary), .stl (binary), .obj or .glb by extension. Coordinates that all fit float are written as float
 /// bits, otherwise as double (PLY) or with all digits (OBJ). The file appears complete or not at all. Throws UsageError
 /// for another extension, for STL or GLB of a mesh whose coordinates do not fit float; InputError for an invalid mesh
 /// (index out of range, not finite, attribute of another length); OutputError if the file cannot be written.
-void save_mesh(const std::filesystem::path& path, const MeshFile& file);
+RHIZODONT_EXPORT void save_mesh(const std::filesystem::path& path, const MeshFile& file);
 
 /// What `save_mesh` would write, for `write_output_files` together with other files. Throws as `save_mesh`.
-std::string mesh_file_bytes(const std::filesystem::path& path, const MeshFile& file);
+RHIZODONT_EXPORT std::string mesh_file_bytes(const std::filesystem::path& path, const MeshFile& file);
 
 /// Throws UsageError unless a mesh can have this name: .ply, .stl, .obj or .glb.
-void require_mesh_ending(const std::filesystem::path& path);
+RHIZODONT_EXPORT void require_mesh_ending(const std::filesystem::path& path);
 
 /// Whether the format of this name holds no more than floats (STL, GLB).
-bool holds_floats_only(const std::filesystem::path& path);
+RHIZODONT_EXPORT bool holds_floats_only(const std::filesystem::path& path);
 
 }  // namespace rhizodont

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/export.hpp"
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/quality.hpp"
 
@@ -38,6 +39,6 @@ struct MeshMeasures {
 
 /// Throws InputError for a mesh without triangles, with an index out of range, a repeated index or a coordinate that is
 /// not a number.
-MeshMeasures measure(const TriangleMesh& mesh);
+RHIZODONT_EXPORT MeshMeasures measure(const TriangleMesh& mesh);
 
 }  // namespace rhizodont

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/export.hpp"
+
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -9,7 +11,7 @@
 namespace rhizodont {
 
 /// Weights and mean crowns, loaded once and used for many teeth, from several threads if wished.
-class CompletionModels {
+class RHIZODONT_EXPORT CompletionModels {
  public:
   /// Reads completion.safetensors and atlas.safetensors from a folder, and skirt.safetensors,
   /// likeness.safetensors and arch.safetensors if they are there. Throws InputError if one is missing or damaged.
@@ -27,9 +29,9 @@ class CompletionModels {
 };
 
 /// The files that `CompletionModels::load` reads from a folder. Throws InputError if one that it needs is not there.
-std::vector<std::filesystem::path> model_files(const std::filesystem::path& folder);
+RHIZODONT_EXPORT std::vector<std::filesystem::path> model_files(const std::filesystem::path& folder);
 
 /// The folder with the shipped models: $RHIZODONT_MODELS, else where they were installed, else the source tree's.
-std::filesystem::path default_models_folder();
+RHIZODONT_EXPORT std::filesystem::path default_models_folder();
 
 }  // namespace rhizodont

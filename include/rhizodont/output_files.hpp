@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/export.hpp"
+
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -29,22 +31,22 @@ struct OutputFile {
 /// Where the file system can keep files without a name (O_TMPFILE), not even SIGKILL leaves an unfinished one behind.
 /// Throws OutputError, with the reason, if any of them cannot be written; then what stood there before stands there
 /// still.
-void write_output_files(const std::vector<OutputFile>& files);
+RHIZODONT_EXPORT void write_output_files(const std::vector<OutputFile>& files);
 
 /// Whether a file could be written here, without writing: for use before long work. Missing folders do not matter if
 /// they could be made. Throws OutputError if not.
-void require_writable_place(const std::filesystem::path& path);
+RHIZODONT_EXPORT void require_writable_place(const std::filesystem::path& path);
 
 /// Refuses outputs that are the same file as an input or as another output: by name, through links of both kinds, or
 /// because both would lead to the same new file. Devices may be named several times, pipes may not. Throws UsageError.
-void require_separate_files(const std::vector<std::filesystem::path>& inputs,
-                            const std::vector<std::filesystem::path>& outputs);
+RHIZODONT_EXPORT void require_separate_files(const std::vector<std::filesystem::path>& inputs,
+                                             const std::vector<std::filesystem::path>& outputs);
 
 /// Whether writing there goes into a pipe, a device or a file that the program was started with (/dev/fd/3), whose name
 /// says nothing of its contents.
-bool is_stream(const std::filesystem::path& path);
+RHIZODONT_EXPORT bool is_stream(const std::filesystem::path& path);
 
 /// Whether this path is the program's own standard output, such as /dev/stdout.
-bool is_standard_output(const std::filesystem::path& path);
+RHIZODONT_EXPORT bool is_standard_output(const std::filesystem::path& path);
 
 }  // namespace rhizodont

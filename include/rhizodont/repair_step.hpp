@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/export.hpp"
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -37,9 +39,9 @@ struct RepairStep {
 };
 
 /// What was done, as reports and the screen say it: "vertex merged with another one at the same place".
-std::string action_text(const RepairStep& step);
+RHIZODONT_EXPORT std::string action_text(const RepairStep& step);
 
 /// The action that a report's text names; `other` for an unknown one.
-RepairAction action_of_text(std::string_view text);
+RHIZODONT_EXPORT RepairAction action_of_text(std::string_view text);
 
 }  // namespace rhizodont

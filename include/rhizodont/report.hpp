@@ -5,6 +5,7 @@
 #include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/export.hpp"
 #include "rhizodont/hash.hpp"
 
 #include <filesystem>
@@ -27,16 +28,17 @@ struct ReportedInput {
 };
 
 /// The record's warnings and where the tooth misses promise 3, a sentence each.
-std::vector<std::string> all_warnings(const CompletionRecord& record);
+RHIZODONT_EXPORT std::vector<std::string> all_warnings(const CompletionRecord& record);
 
 /// The report on a completed tooth as JSON text; numbers of vertices stand as in the record (`refer_to_file`). Schema:
 /// docs/report.schema.json.
-std::string completion_report(const CompletedTooth& tooth, const ReportedInput& input);
+RHIZODONT_EXPORT std::string completion_report(const CompletedTooth& tooth, const ReportedInput& input);
 
 /// The report on a crown that was refused or came to no result: the reason and all ids concerned, as they stand in the
 /// error (`in_terms_of_file`). `warnings`: what reading the file found.
-std::string completion_refusal_report(const Error& error, const CompleteOptions& options, const ReportedInput& input,
-                                      const std::vector<std::string>& warnings = {});
+RHIZODONT_EXPORT std::string completion_refusal_report(const Error& error, const CompleteOptions& options,
+                                                       const ReportedInput& input,
+                                                       const std::vector<std::string>& warnings = {});
 
 /// What `check` excuses, as the report on a completed tooth lists it.
 struct ExcusedByReport {
@@ -46,10 +48,10 @@ struct ExcusedByReport {
 
 /// Reads that from a report. `file_vertices`: of the crown's MeshFile. Throws InputError if it is no report on a
 /// completed tooth or the report on another file.
-ExcusedByReport excused_by_report(const std::filesystem::path& report, const std::string& crown_sha256,
-                                  const std::vector<int>& file_vertices);
+RHIZODONT_EXPORT ExcusedByReport excused_by_report(const std::filesystem::path& report, const std::string& crown_sha256,
+                                                   const std::vector<int>& file_vertices);
 
 /// Options of `check` that excuse that, no more; else the defaults.
-CheckOptions allowing_for(const ExcusedByReport& excused);
+RHIZODONT_EXPORT CheckOptions allowing_for(const ExcusedByReport& excused);
 
 }  // namespace rhizodont

@@ -5,6 +5,7 @@
 
 #include <rhizodont/check.hpp>
 #include <rhizodont/complete.hpp>
+#include <rhizodont/error.hpp>
 #include <rhizodont/io.hpp>
 #include <rhizodont/version.hpp>
 
@@ -12,6 +13,12 @@
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
+  try {
+    rhizodont::load_mesh("there_is_none.ply");
+    return 1;
+  } catch (const rhizodont::InputError& error) {  // the library's types are the caller's
+    std::printf("%s\n", error.what());
+  }
   const rhizodont::TriangleMesh crown = rhizodont::load_mesh(argv[1]).mesh;
   const auto models = rhizodont::CompletionModels::load(rhizodont::default_models_folder());
   const rhizodont::CompletedTooth tooth = rhizodont::complete_tooth(crown, models);
