@@ -12,7 +12,7 @@ git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
 /usr/bin/python3 scripts/check_rooms.py
 cmake -S . -B build -G Ninja -DRHIZODONT_WERROR=ON -DRHIZODONT_TESTS=ON -DRHIZODONT_BENCH=ON -DRHIZODONT_TRAINING=ON
 cmake --build build
-scripts/tidy_changed.sh
+scripts/tidy_changed.sh --at-most 12
 rm -rf build/test_results
 GTEST_OUTPUT="xml:$PWD/build/test_results/" ctest --test-dir build --output-on-failure --no-tests=error -j 2
 /usr/bin/python3 scripts/check_skipped.py build/test_results
