@@ -7,7 +7,7 @@
 # say the same of every tooth.
 # usage: batch_union.sh [N=200] [SCANS]
 # SCANS: a folder of labelled scans, used one after the other until there are N cases. Without it the cases are sample
-# crowns, each fourth one an arch of two of them, each a little elsewhere.
+# crowns, each fifth one an arch of two of them, each a little elsewhere.
 # Needs a built program (BUILD=build). OPTIONS: of rhizodont batch (default --e 1). OUT: where it works (default: a
 # temporary folder). Ends with 1 if anything differs.
 set -euo pipefail
@@ -49,7 +49,7 @@ if scans:
 else:
     for i in range(count):
         x = 0.015625 * i
-        if i % 4 == 3:
+        if i % 5 == 4:
             folder = work / f"scans/arch{i}"
             folder.mkdir(parents=True, exist_ok=True)
             (folder / "36.stl").write_bytes(moved("crown_36.stl", x))
@@ -80,10 +80,15 @@ begin=$(date +%s.%N)
 victim=$!
 batch -o parts --shard 2/2 --threads 1 &
 other=$!
-# Of two shards each takes about as long as the whole on twice the threads.
-moment=$(awk -v seed="$RANDOM" -v whole="$whole" 'BEGIN { srand(seed); print (0.1 + 0.7 * rand()) * whole }')
+# At some case of its own, some time after its beginning.
+cases=$(((count + 1) / 2))
+before=$((RANDOM % cases)) moment=$(awk -v seed="$RANDOM" 'BEGIN { srand(seed); print 0.7 * rand() }')
+while kill -0 "$victim" 2>/dev/null; do
+  [ "$(cat parts/ledger/1-of-2.*.jsonl 2>/dev/null | grep -c '^{"event":"case"')" -lt "$before" ] || break
+  sleep 0.05
+done
 sleep "$moment"
-if kill -KILL "$victim" 2>/dev/null; then killed="killed after $moment s"; else killed="was through before $moment s"; fi
+if kill -KILL "$victim" 2>/dev/null; then killed="killed $moment s after its case $before"; else killed="was through"; fi
 wait "$victim" 2>/dev/null || true
 "$program" batch status parts
 batch -o parts --shard 1/2 --threads 1
