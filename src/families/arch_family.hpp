@@ -32,7 +32,7 @@ struct ArchFamily {
 ArchFamily load_arch_family(const std::filesystem::path& folder);
 
 /// How generated arches vary. Shares are probabilities, 0..1; factors are 0..2, 1 being as people are, 0 none of it.
-struct ArchOptions {
+struct ArchDrawOptions {
   std::optional<Jaw> jaw;  ///< nothing: drawn
   bool any_pose = true;    ///< turned and moved at random; else y is up, z to the front, teeth as the arch's frame
   /// Least and most triangles, 2,000..400,000; their number is drawn between, evenly in its logarithm. A scan whose
@@ -82,6 +82,6 @@ struct GeneratedArch {
 /// Draws scan number `seed`. The upper and the lower jaw of one seed belong to one person. Depends on the arguments
 /// alone, not on threads. Throws UsageError for an option out of range; NoResultError where a draw gives no surface
 /// even after three attempts.
-GeneratedArch sample_arch(const ArchFamily& family, std::uint64_t seed, const ArchOptions& options = {});
+GeneratedArch sample_arch(const ArchFamily& family, std::uint64_t seed, const ArchDrawOptions& options = {});
 
 }  // namespace rhizodont
