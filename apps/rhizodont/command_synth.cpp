@@ -11,6 +11,7 @@
 #include "pictures/tiles.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "synth_arches.hpp"
 #include "teeth/fdi.hpp"
 #include "training/skirt_sample.hpp"
 
@@ -39,6 +40,11 @@ struct SynthCommand {
   double edge_mm = 0;
   std::string crown_format = "ply";
   double noise_mm = 0.005;
+  bool arches = false;
+  std::string jaw;
+  std::vector<std::size_t> triangles;
+  bool upright = false;
+  double grid_mm = 0;
 };
 
 CroppedCrown crop(const SynthCommand& command, const SyntheticTooth& tooth, std::uint64_t seed) {
@@ -184,7 +190,22 @@ void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
   }
 }
 
+SynthArches arches_of(const SynthCommand& command) {
+  SynthArches arches{
+      command.data, command.output, command.sheet, command.count, command.seed, command.crown_format, {}};
+  if (command.output.empty() && command.sheet.empty())
+    throw UsageError("Say where to: -o FOLDER for arches, --sheet PNG for a picture of them.");
+  if (arches.format == "stl")
+    throw UsageError("STL does not number its vertices, so it cannot be labelled: ply or obj.");
+  if (!command.jaw.empty()) arches.options.jaw = command.jaw == "upper" ? Jaw::upper : Jaw::lower;
+  if (!command.triangles.empty()) arches.options.triangles = {command.triangles.front(), command.triangles.back()};
+  if (command.grid_mm > 0) arches.options.grid_mm = command.grid_mm;
+  arches.options.any_pose = !command.upright;
+  return arches;
+}
+
 void run(const SynthCommand& command) {
+  if (command.arches) return write_arches(arches_of(command));
   if (command.output.empty() && command.atlas.empty() && command.arch.empty() && command.sheet.empty())
     throw UsageError(
         "Say where to: -o FOLDER for teeth, --sheet PNG for a picture, --atlas FILE for mean crowns, "
@@ -227,6 +248,16 @@ void add_synth_command(CLI::App& app) {
   synth->add_option("--sheet", command->sheet,
                     "Draw what was made to this PNG; without -o: a contact sheet, --count teeth of each type");
   synth->add_option("--atlas", command->atlas, "Write mean crowns and anchors of all types to this safetensors file");
+  synth->add_flag(
+      "--arch", command->arches,
+      "Make scans of whole arches instead: arch_SEED_JAW.ply (--crown-format obj), labels as .json, and what "
+      "was drawn as _drawn.json");
+  synth->add_option("--jaw", command->jaw, "With --arch: upper or lower; drawn without it")
+      ->check(CLI::IsMember({"upper", "lower"}));
+  synth->add_option("--triangles", command->triangles, "With --arch: least and most triangles, 2000 to 400000")
+      ->expected(1, 2);
+  synth->add_option("--grid", command->grid_mm, "With --arch: fineness of the surface, 0.2 to 0.6 mm");
+  synth->add_flag("--upright", command->upright, "With --arch: y up, z to the front; else in any pose");
   synth->add_option("--arch-model", command->arch,
                     "Write where the mean crowns stand in the arch, and how, to this safetensors file");
   synth->add_flag("--overwrite", command->overwrite, "Teeth and crowns of the same names in the folder are replaced");

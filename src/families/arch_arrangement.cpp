@@ -19,8 +19,8 @@ std::size_t other_side(std::size_t j) { return arch_places - 1 - j; }
 
 /// Numbers of variance 1 that vary smoothly along the arch, alike on both sides if wanted.
 std::array<double, arch_places> smooth_numbers(RandomStream& random, bool symmetric) {
-  constexpr double width = 1.7;  // teeth
-  constexpr int margin = 5;
+  constexpr double width = 3;  // teeth
+  constexpr int margin = 8;
   std::array<double, arch_places + 2 * margin> white{};
   for (double& w : white) w = random.normal(0.0, 1.0);
   std::array<double, arch_places> result{};
@@ -60,8 +60,8 @@ Deviations draw_deviations(const ArchSource& source, Jaw jaw, double factor, Ran
     Eigen::Vector3d smooth, own, turn;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto i = static_cast<Eigen::Index>(k);
-      smooth[i] = 0.78 * symmetric[k][j] + 0.45 * other[k][j];
-      own[i] = 0.43 * random.normal(0.0, 1.0);
+      smooth[i] = 0.9 * symmetric[k][j] + 0.28 * other[k][j];
+      own[i] = 0.33 * random.normal(0.0, 1.0);
       turn[i] = 0.5 * symmetric[k + 3][j] + 0.3 * other[k + 3][j] + 0.81 * random.normal(0.0, 1.0);
     }
     result.smooth[j] = factor * (source.place_root[row] * smooth).cwiseProduct(mirror).cwiseProduct(turned);
@@ -112,7 +112,7 @@ void drop_some(Presence& presence, RandomStream& random) {
   }
 }
 
-Presence draw_presence(const PersonDraw& person, RandomStream& random, const ArchDrawOptions& options) {
+Presence draw_presence(const ArchPerson& person, RandomStream& random, const ArchDrawOptions& options) {
   Presence presence;
   presence.there.fill(true);
   presence.there[0] = presence.there[arch_places - 1] = false;
@@ -202,7 +202,7 @@ void bring_together(const ArchCrowns& arch, const Standing& before, Standing& on
 }
 
 /// Overlaps, gaps, turned and tilted teeth.
-void disturb(const PersonDraw& person, std::vector<Standing>& teeth, RandomStream& random,
+void disturb(const ArchPerson& person, std::vector<Standing>& teeth, RandomStream& random,
              const ArchDrawOptions& options) {
   for (std::size_t j = 0; j < arch_places; ++j) {
     Standing& one = teeth[j];
@@ -225,7 +225,7 @@ void disturb(const PersonDraw& person, std::vector<Standing>& teeth, RandomStrea
       one.turn += random.uniform(-1, 1) * (premolar ? 80 : 35) * one_degree * up;
     }
     if (random.chance(0.03 * options.arrangement)) one.place.y() += random.uniform(-2.0, 1.8);
-    if (random.chance(0.03 * options.arrangement)) one.off += random.uniform(-2.5, 2.5);
+    if (random.chance(0.02 * options.arrangement)) one.off += random.uniform(-2.5, 2.5);
   }
 }
 
@@ -290,7 +290,7 @@ void make_ghost(ArchCrown& crown, double lower, double narrower) {
   for (double& h : crown.rim.height) h = 0.2 * (h - mean) - lower;
 }
 
-void add_details(const PersonDraw& person, ArchCrowns& arch, RandomStream& random, const ArchDrawOptions& options) {
+void add_details(const ArchPerson& person, ArchCrowns& arch, RandomStream& random, const ArchDrawOptions& options) {
   const bool stumps = random.chance(options.stump_share);
   const bool plates = !person.brackets && random.chance(options.bracket_share);
   const std::size_t first_stump = random.index(arch_places), stump_count = 1 + random.index(4);
@@ -329,11 +329,11 @@ PlanCurve curve_through(const std::vector<Standing>& teeth) {
 
 }  // namespace
 
-ArchCrowns draw_crowns(const ArchSource& source, const PersonDraw& person, Jaw jaw, std::uint64_t seed,
+ArchCrowns draw_crowns(const ArchSource& source, const ArchPerson& person, Jaw jaw, std::uint64_t seed,
                        const ArchDrawOptions& options) {
   RandomStream random(seed, jaw == Jaw::upper ? 501 : 502);
   std::vector<LooseCrown> loose = draw_loose_crowns(source, person, jaw, random, options);
-  const double factor = options.arrangement * (person.real_person >= 0 ? 0.5 : 1);
+  const double factor = options.arrangement * (person.real_person >= 0 ? 0.5 : person.disorder);
   const Deviations deviations = draw_deviations(source, jaw, factor, random);
   const Presence presence = draw_presence(person, random, options);
   std::vector<Standing> teeth(arch_places);

@@ -56,13 +56,28 @@ TriangleMesh formed_crown(const ArchCrownForm& form, const Eigen::VectorXf& coef
   return mesh;
 }
 
+/// The same with the finer forms of a real crown. @param back  how far it goes back to the mean first, 0..1
+TriangleMesh formed_crown(const RealCrown& crown, const ArchCrownForm& form, const Eigen::VectorXf& coefficients,
+                          double back) {
+  const TriangleMesh drawn = formed_crown(form, coefficients);
+  TriangleMesh mesh{crown.as_mean, crown.mesh.triangles};
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    mesh.vertices[v] += back * crown.to_mean[v];
+    for (const auto& [index, share] : crown.carriers[v]) {
+      const auto at = static_cast<std::size_t>(index);
+      mesh.vertices[v] += static_cast<double>(share) * (drawn.vertices[at] - form.mean.vertices[at]);
+    }
+  }
+  return mesh;
+}
+
 void mirror_x(TriangleMesh& mesh) {
   for (Point& p : mesh.vertices) p.x() = -p.x();
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
 }
 
 /// Places 1..8 of the left side, arch's frame: of a person or of the mean arch.
-std::array<Point, 8> left_places(const ArchSource& source, const PersonDraw& person, Jaw jaw) {
+std::array<Point, 8> left_places(const ArchSource& source, const ArchPerson& person, Jaw jaw) {
   std::array<Point, 8> places;
   for (std::size_t i = 0; i < 7; ++i) {
     const std::size_t row = i + (jaw == Jaw::upper ? 0 : 7);
@@ -90,9 +105,9 @@ void measure_crown(ArchCrown& crown) {
 
 }  // namespace
 
-PersonDraw draw_person(const ArchSource& source, std::uint64_t seed, const ArchDrawOptions& options) {
+ArchPerson draw_arch_person(const ArchSource& source, std::uint64_t seed, const ArchDrawOptions& options) {
   RandomStream random(seed, 500);
-  PersonDraw person;
+  ArchPerson person;
   Eigen::Matrix<double, 2 * arch_rows, 1> draw;
   for (double& value : draw) value = random.normal(0.0, 1.0);
   const Eigen::Matrix<double, 2 * arch_rows, 1> sizes = options.shape * (source.size_root * draw);
@@ -106,17 +121,21 @@ PersonDraw draw_person(const ArchSource& source, std::uint64_t seed, const ArchD
   const double kind = random.uniform();
   person.crowded = kind < options.crowding_share;
   person.spaced = !person.crowded && kind < options.crowding_share + options.spacing_share;
-  person.room_mm = person.crowded ? random.uniform(0.4, 2.6) : person.spaced ? random.uniform(0.2, 1.3) : 0;
+  const double room = random.uniform();
+  person.room_mm = person.crowded ? 0.3 + 1.9 * room * room : person.spaced ? random.uniform(0.2, 1.3) : 0;
   person.child = random.chance(options.milk_share);
   person.brackets = random.chance(options.bracket_share);
   person.mirrored = random.chance(0.5);
   const double real = random.uniform();
   if (!source.people.empty() && !person.child && real < options.real_crown_share)
     person.real_person = static_cast<int>(random.index(source.people.size()));
+  const double detail = random.uniform();
+  if (!source.people.empty() && detail < 0.75) person.detail = 1;
+  person.disorder = random.uniform(0.45, 1.1);
   return person;
 }
 
-std::vector<LooseCrown> draw_loose_crowns(const ArchSource& source, const PersonDraw& person, Jaw jaw,
+std::vector<LooseCrown> draw_loose_crowns(const ArchSource& source, const ArchPerson& person, Jaw jaw,
                                           RandomStream& random, const ArchDrawOptions& options) {
   // The upper jaw is turned about z, so that its crowns point up too.
   const double sense = jaw == Jaw::upper ? -1 : 1;
@@ -130,8 +149,12 @@ std::vector<LooseCrown> draw_loose_crowns(const ArchSource& source, const Person
   }
   std::array<std::size_t, arch_rows> side{};
   std::vector<std::array<Eigen::VectorXf, 2>> coefficients;
+  std::array<const std::array<RealCrown, 2>*, arch_rows> detail{};
+  const double back = random.uniform(0.2, 1.0);
   for (std::size_t row = 0; row < arch_rows; ++row) {
     side[row] = random.index(2);
+    if (random.chance(person.detail) && !source.people.empty())
+      detail[row] = &source.people[random.index(source.people.size())][row];
     coefficients.push_back(draw_coefficients(source.forms[row][side[row]], options.shape, random));
   }
   std::vector<LooseCrown> loose(arch_places);
@@ -149,6 +172,9 @@ std::vector<LooseCrown> draw_loose_crowns(const ArchSource& source, const Person
     if (person.real_person >= 0) {
       const std::size_t of_side = right != person.mirrored ? 1 : 0;
       mesh = source.people[static_cast<std::size_t>(person.real_person)][row][of_side].mesh;
+    } else if (detail[row] != nullptr) {
+      mesh =
+          formed_crown((*detail[row])[side[row]], source.forms[row][side[row]], coefficients[row][right ? 1 : 0], back);
     } else {
       mesh = formed_crown(source.forms[row][side[row]], coefficients[row][right ? 1 : 0]);
     }

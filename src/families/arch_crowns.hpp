@@ -61,7 +61,7 @@ struct ArchCrowns {
 };
 
 /// What both jaws of a person have in common.
-struct PersonDraw {
+struct ArchPerson {
   std::array<double, 2 * arch_rows> size{};  ///< relative to the mean, rows as in ArchSource::size_root
   double wear_mm = 0;
   double margin_shift = 0;  ///< mm, of all teeth
@@ -69,10 +69,12 @@ struct PersonDraw {
   double room_mm = 0;    ///< how wide gaps are, or how far crowded teeth stand out of line
   int real_person = -1;  ///< whose crowns, or -1: drawn
   bool mirrored = false;
+  double disorder = 1;  ///< factor on how places and turns deviate from the mean arch
+  double detail = 0;    ///< share of drawn crowns with a real crown's finer forms on them
 };
 
 /// Draws what both jaws share. Depends on its arguments alone.
-PersonDraw draw_person(const ArchSource& source, std::uint64_t seed, const ArchDrawOptions& options);
+ArchPerson draw_arch_person(const ArchSource& source, std::uint64_t seed, const ArchDrawOptions& options);
 
 /// A crown before it has its place: turned as in the mean arch, in the work frame, about its middle.
 struct LooseCrown {
@@ -82,11 +84,11 @@ struct LooseCrown {
 };
 
 /// The crowns of a person's jaw at places 8 (right) to 8 (left), all sixteen, form and size drawn.
-std::vector<LooseCrown> draw_loose_crowns(const ArchSource& source, const PersonDraw& person, Jaw jaw,
+std::vector<LooseCrown> draw_loose_crowns(const ArchSource& source, const ArchPerson& person, Jaw jaw,
                                           RandomStream& random, const ArchDrawOptions& options);
 
 /// Draws a jaw of a person: crowns, which are there, places, contacts.
-ArchCrowns draw_crowns(const ArchSource& source, const PersonDraw& person, Jaw jaw, std::uint64_t seed,
+ArchCrowns draw_crowns(const ArchSource& source, const ArchPerson& person, Jaw jaw, std::uint64_t seed,
                        const ArchDrawOptions& options);
 
 }  // namespace rhizodont

@@ -95,7 +95,7 @@ GeneratedArch attempt(const ArchSource& source, std::uint64_t seed, std::uint64_
   RandomStream random(seed, 510 + trial);
   const Jaw drawn_jaw = random.chance(0.5) ? Jaw::upper : Jaw::lower;
   const Jaw jaw = options.jaw.value_or(drawn_jaw);
-  const PersonDraw person = draw_person(source, seed, options);
+  const ArchPerson person = draw_arch_person(source, seed, options);
   const ArchCrowns arch = draw_crowns(source, person, jaw, seed + (trial << 32), options);
   const double share = random.uniform();
   const auto triangles = static_cast<std::size_t>(std::lround(
@@ -108,6 +108,7 @@ GeneratedArch attempt(const ArchSource& source, std::uint64_t seed, std::uint64_
   const ScanExtent extent = draw_extent(arch, random, options);
   if (extent.model) add_model_base(arch, random, fields);
   ScanSurface scan = surface_of(arch, fields, random.uniform(0.1, 0.5));
+  drop_crumbs(scan, scan.mesh.triangles.size() / 20);  // hollows between teeth
   form_gum(arch, fields, random, scan);
   if (!extent.model) trim(arch, fields, extent, random, scan);
   spoil(arch, options.defects, random, scan);

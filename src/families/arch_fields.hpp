@@ -46,6 +46,10 @@ struct GumForm {
   double rise = 0.8, rise_length = 0.9;           ///< mm: thickness that the margin swells to, and within what depth
   double buccal_slope = 0.15, oral_slope = 0.25;  ///< growth of thickness per mm of depth
   double vestibule = 9, flare = 0.7;              ///< depth at which the cheek begins, and how it bends outwards
+  double papilla = 1.2;                           ///< mm: how high the gum rises between two teeth, above their necks
+  double wall = 0.85;                             ///< width of the ridge between the teeth, of theirs
+  double jaw = 0.5;                               ///< mm: by how much the jaw below is wider than the ridge
+  double root_shows = 4;                          ///< mm of depth down to which the gum follows each root
   double blend = 0.6;                             ///< mm: how softly neighbours run into each other
   double palate_depth = 14, palate_power = 0.65;  ///< below the necks; the larger the more like a gable
   double floor_depth = 10;                        ///< of the mouth, lower jaw

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
+#include <optional>
 #include <vector>
 
 namespace rhizodont {
@@ -39,6 +41,8 @@ class Collar {
     if (depth <= 0) return std::hypot(std::max(0.0, across - radius + 0.12), depth);
     double thick = -0.12 + form_.rise * (1 - std::exp(-depth / form_.rise_length)) + slope * depth;
     if (sine > 0) thick += sine * form_.flare * soft_plus(depth - form_.vestibule, 1.0);
+    // Farther down the jaw alone shows, not each root.
+    thick -= 0.5 * soft_plus(depth - form_.root_shows, 0.7);
     return std::max(across - radius - thick, -depth);
   }
 
@@ -63,7 +67,7 @@ std::vector<ArchCrown> ridges_behind(const ArchCrowns& arch) {
       ridge.hood_mm = 0;
       ridge.along += step * 0.8 * k * last.width;
       const Eigen::Vector2d moved = arch.curve.at(ridge.along) - arch.curve.at(last.along);
-      ridge.to_work.pretranslate(Eigen::Vector3d(moved.x(), last.ghost ? -0.6 * k : 0.4 - 1.2 * k, moved.y()));
+      ridge.to_work.pretranslate(Eigen::Vector3d(moved.x(), last.ghost ? -0.6 * k : -0.3 - 1.2 * k, moved.y()));
       for (double& r : ridge.rim.radius) r *= 0.95;
       ridges.push_back(std::move(ridge));
     }
@@ -146,6 +150,77 @@ PlanMap plan_of(const ArchCrowns& arch, const Lattice& lattice) {
   return map;
 }
 
+/// The ridge that carries the teeth, a wall along the arch: fills between the collars, its top makes the papillae.
+class RidgeWall {
+ public:
+  RidgeWall(const ArchCrowns& arch, const std::vector<ArchCrown>& behind, const GumForm& form) : form_(form) {
+    add(arch, behind[1]);
+    add(arch, behind[0]);
+    for (const ArchCrown& crown : arch.crowns) add(arch, crown);
+    add(arch, behind[2]);
+    add(arch, behind[3]);
+    for (std::size_t i = 0; i + 1 < knots_.size(); ++i) {
+      Knot &a = knots_[i], &b = knots_[i + 1];
+      b.along = std::max(b.along, a.along + 0.5);
+      const double gap = b.along - a.along - 0.5 * (a.width + b.width);
+      const double papilla = form.papilla * (1 - smooth_step(gap / 2.5)) - 0.6 * smooth_step((gap - 1) / 3);
+      a.papilla = a.ghost || b.ghost ? 0 : papilla;
+    }
+  }
+
+  /// What a column of the lattice meets of it; nothing beyond its ends.
+  struct Column {
+    double off = 0, half = 0, top = 0;
+    bool buccal = true;
+  };
+  std::optional<Column> column(double along, double off) const {
+    std::size_t i = 0;
+    while (i + 1 < knots_.size() && knots_[i + 1].along < along) ++i;
+    if (i + 1 == knots_.size() || along < knots_[0].along) return {};
+    const Knot &a = knots_[i], &b = knots_[i + 1];
+    const double part = (along - a.along) / (b.along - a.along), smooth = smooth_step(part);
+    const auto mix = [&](double from, double to) { return from + smooth * (to - from); };
+    const double middle = mix(a.off, b.off), peak = 4 * part * (1 - part);
+    return Column{std::abs(off - middle), mix(a.half, b.half), mix(a.top, b.top) + a.papilla * peak * peak,
+                  off > middle};
+  }
+
+  double operator()(const Column& at, double height) const {
+    constexpr double round = 1.6;
+    const double depth = std::max(0.0, at.top - height);
+    const double slope = at.buccal ? form_.buccal_slope : form_.oral_slope;
+    const double half = at.half + (form_.rise + form_.jaw) * (1 - std::exp(-depth / 2.5)) + slope * depth +
+                        (at.buccal ? form_.flare * soft_plus(depth - form_.vestibule, 1.0) : 0);
+    const double side = at.off - half + round, above = height - at.top + round;
+    return std::hypot(std::max(side, 0.0), std::max(above, 0.0)) + std::min(std::max(side, above), 0.0) - round;
+  }
+
+ private:
+  struct Knot {
+    double along = 0, off = 0, half = 0, top = 0, width = 0, papilla = 0;
+    bool ghost = false;
+  };
+
+  void add(const ArchCrowns& arch, const ArchCrown& crown) {
+    const Point at = crown.to_work.translation();
+    const Eigen::Vector2d away = Eigen::Vector2d(at.x(), at.z()) - arch.curve.at(crown.along);
+    Knot knot;
+    knot.along = crown.along;
+    knot.off = away.dot(arch.outward_at(crown.along));
+    knot.half = 0.5 * (crown.rim.at(0.5 * std::numbers::pi).first + crown.rim.at(1.5 * std::numbers::pi).first) *
+                (crown.ghost ? 0.85 : form_.wall);
+    double rim = 0;
+    for (const double height : crown.rim.height) rim += height / rim_sectors;
+    knot.top = at.y() + rim + (crown.ghost ? -0.8 : crown.margin_shift - 0.5);
+    knot.width = crown.ghost ? 0 : crown.width;
+    knot.ghost = crown.ghost;
+    knots_.push_back(knot);
+  }
+
+  const GumForm& form_;
+  std::vector<Knot> knots_;
+};
+
 /// Adds exp(-distance / blend) of what is at hand to the sums.
 void add_collar(const Collar& collar, const ArchCrown& crown, const GumForm& form, const Lattice& lattice,
                 std::vector<float>& sums) {
@@ -187,17 +262,21 @@ double PlanMap::sample(const std::vector<float>& values, double x, double z) con
 
 GumForm draw_gum_form(Jaw jaw, RandomStream& random) {
   GumForm form;
-  form.rise = random.uniform(0.45, 1.3);
+  form.rise = random.uniform(0.6, 1.5);
   form.rise_length = random.uniform(0.6, 1.6);
-  form.buccal_slope = random.uniform(0.02, 0.3);
-  form.oral_slope = random.uniform(0.05, jaw == Jaw::upper ? 0.5 : 0.35);
+  form.buccal_slope = random.uniform(0.05, 0.4);
+  form.oral_slope = random.uniform(0.15, jaw == Jaw::upper ? 0.7 : 0.5);
+  form.papilla = random.uniform(0.4, 2.2);
+  form.wall = random.uniform(0.7, 0.95);
   form.vestibule = random.uniform(4, 12);
   form.flare = random.uniform(0.0, 1.1);
+  form.jaw = random.uniform(0.2, 1.6);
+  form.root_shows = random.uniform(0.8, 4);
   form.blend = random.uniform(0.35, 0.9);
   form.palate_depth = random.uniform(8, 19);
   form.palate_power = random.uniform(0.5, 0.85);
   form.floor_depth = random.uniform(7, 14);
-  form.floor = random.chance(0.5);
+  form.floor = random.chance(0.3);
   return form;
 }
 
@@ -215,6 +294,7 @@ void add_gum(const ArchCrowns& arch, const GumForm& form, ArchFields& fields) {
   const std::vector<ArchCrown> ridges = ridges_behind(arch);
   for (const std::vector<ArchCrown>* group : {&arch.crowns, &ridges})
     for (const ArchCrown& crown : *group) add_collar(Collar(crown, form, distal_of(crown)), crown, form, lattice, sums);
+  const RidgeWall wall(arch, ridges, form);
   fields.gum.assign(lattice.size(), field_reach);
   for (int z = 0; z < lattice.count[2]; ++z)
     for (int x = 0; x < lattice.count[0]; ++x) {
@@ -222,15 +302,19 @@ void add_gum(const ArchCrowns& arch, const GumForm& form, ArchFields& fields) {
       const PlanMap& plan = fields.plan;
       // The cell's own value decides whether there is a level: between cells with and without one there is none.
       const double level = plan.sample(plan.level, foot.x(), foot.z());
+      const auto column =
+          wall.column(plan.sample(plan.along, foot.x(), foot.z()), plan.sample(plan.off, foot.x(), foot.z()));
       for (int y = 0; y < lattice.count[1]; ++y) {
         const std::size_t i = lattice.index(x, y, z);
+        const double height = lattice.at(x, y, z).y();
         float sum = sums[i];
-        if (level > -500) {
-          const double distance = 0.75 * (lattice.at(x, y, z).y() - level);
+        const auto add = [&](double distance) {
           if (distance < 4 * form.blend)
             sum +=
                 static_cast<float>(std::exp(-std::max(distance, -2.0 * static_cast<double>(field_reach)) / form.blend));
-        }
+        };
+        if (level > -500) add(0.75 * (height - level));
+        if (column) add(wall(*column, height));
         if (sum > 0)
           fields.gum[i] = std::clamp(static_cast<float>(-form.blend) * std::log(sum), -field_reach, field_reach);
       }

@@ -17,12 +17,13 @@
 #include <CGAL/Surface_mesh_simplification/Policies/Edge_collapse/Midpoint_placement.h>
 #include <CGAL/Surface_mesh_simplification/edge_collapse.h>
 
+#include <boost/optional.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <utility>
 
 namespace rhizodont {
@@ -66,27 +67,6 @@ std::vector<bool> pinched_vertices(const TriangleMesh& mesh) {
   return pinched;
 }
 
-/// Pieces below `least` triangles go; so do pinched vertices.
-void drop_crumbs(ScanSurface& scan, std::size_t least) {
-  for (int round = 0; round < 6; ++round) {
-    std::vector<bool> keep = pinched_vertices(scan.mesh);
-    if (std::find(keep.begin(), keep.end(), true) == keep.end()) break;
-    keep.flip();
-    keep_vertices(scan, keep);
-  }
-  DisjointSets sets(scan.mesh.vertices.size());
-  const auto piece = [&](std::size_t v) { return static_cast<std::size_t>(sets.find(static_cast<int>(v))); };
-  for (const Triangle& t : scan.mesh.triangles) {
-    sets.join(t[0], t[1]);
-    sets.join(t[0], t[2]);
-  }
-  std::vector<std::size_t> triangles(scan.mesh.vertices.size(), 0);
-  for (const Triangle& t : scan.mesh.triangles) ++triangles[piece(static_cast<std::size_t>(t[0]))];
-  std::vector<bool> keep(scan.mesh.vertices.size());
-  for (std::size_t v = 0; v < keep.size(); ++v) keep[v] = triangles[piece(v)] >= least;
-  keep_vertices(scan, keep);
-}
-
 /// Where gum is measured from: teeth, and ridges where there are none.
 std::vector<Point> landmarks(const ArchCrowns& arch, const ScanSurface& scan) {
   std::vector<Point> points;
@@ -112,8 +92,8 @@ std::vector<Point> landmarks(const ArchCrowns& arch, const ScanSurface& scan) {
 class UnevenCost {
  public:
   explicit UnevenCost(std::vector<double> factors) : factors_(std::move(factors)) {}
-  template <class Profile>
-  std::optional<double> operator()(const Profile& profile, const std::optional<typename Profile::Point>&) const {
+  template <class Profile, class Placement>
+  boost::optional<typename Profile::FT> operator()(const Profile& profile, const Placement&) const {
     const double a = factors_[static_cast<std::size_t>(profile.v0())],
                  b = factors_[static_cast<std::size_t>(profile.v1())];
     return 0.5 * (a + b) * std::sqrt(CGAL::to_double(CGAL::squared_distance(profile.p0(), profile.p1())));
@@ -125,9 +105,29 @@ class UnevenCost {
 
 }  // namespace
 
+void drop_crumbs(ScanSurface& scan, std::size_t least) {
+  for (int round = 0; round < 6; ++round) {
+    std::vector<bool> keep = pinched_vertices(scan.mesh);
+    if (std::find(keep.begin(), keep.end(), true) == keep.end()) break;
+    keep.flip();
+    keep_vertices(scan, keep);
+  }
+  DisjointSets sets(scan.mesh.vertices.size());
+  const auto piece = [&](std::size_t v) { return static_cast<std::size_t>(sets.find(static_cast<int>(v))); };
+  for (const Triangle& t : scan.mesh.triangles) {
+    sets.join(t[0], t[1]);
+    sets.join(t[0], t[2]);
+  }
+  std::vector<std::size_t> triangles(scan.mesh.vertices.size(), 0);
+  for (const Triangle& t : scan.mesh.triangles) ++triangles[piece(static_cast<std::size_t>(t[0]))];
+  std::vector<bool> keep(scan.mesh.vertices.size());
+  for (std::size_t v = 0; v < keep.size(); ++v) keep[v] = triangles[piece(v)] >= least;
+  keep_vertices(scan, keep);
+}
+
 ScanExtent draw_extent(const ArchCrowns& arch, RandomStream& random, const ArchDrawOptions& options) {
   ScanExtent extent;
-  extent.buccal = random.uniform(2.5, 10);
+  extent.buccal = random.uniform(3, 10);
   extent.oral = random.uniform(2.5, 10);
   extent.behind = random.uniform(1.0, 8);
   extent.whole_palate = random.chance(0.75);
@@ -152,7 +152,7 @@ void trim(const ArchCrowns& arch, const ArchFields& fields, const ScanExtent& ex
   if (marks.empty()) return;
   const NearestVertexIndex index(marks);
   const WaveNoise slow(random, 12, 40), ragged(random, 1.5, 6);
-  const double slow_share = random.uniform(0.1, 0.45), ragged_mm = random.uniform(0.1, 0.9);
+  const double slow_share = random.uniform(0.1, 0.45), ragged_mm = random.uniform(0.1, 0.7);
   double back = 1e9, first = 1e9, last = -1e9;
   for (const ArchCrown& crown : arch.crowns) {
     if (crown.ghost) continue;
@@ -210,7 +210,7 @@ void spoil(const ArchCrowns& arch, double amount, RandomStream& random, ScanSurf
   const WaveNoise ragged(random, 0.8, 3);
   for (int n = how_many(3); n > 0; --n) {
     std::size_t at = any_vertex();
-    if (scan.fdi[at] != 0 && random.chance(0.6)) at = any_vertex();
+    for (int again = 0; again < 3 && scan.fdi[at] != 0; ++again) at = any_vertex();
     const Point centre = scan.mesh.vertices[at];
     const double size = random.uniform(0.3, 1.3) + (random.chance(0.1) ? random.uniform(0, 3) : 0);
     for (std::size_t v = 0; v < keep.size(); ++v)
@@ -273,9 +273,12 @@ void thin(std::size_t triangles, RandomStream& random, ScanSurface& scan) {
   SurfaceMesh surface = to_surface_mesh(scan.mesh);
   const std::size_t edges = surface.number_of_edges() * triangles / scan.mesh.triangles.size();
   const SMS::Count_stop_predicate<SurfaceMesh> stop(edges);
-  SMS::edge_collapse(
-      surface, stop,
-      CGAL::parameters::get_cost(UnevenCost(std::move(factors))).get_placement(SMS::Midpoint_placement<SurfaceMesh>()));
+  if (random.chance(0.6))  // flat parts coarser than bent ones
+    SMS::edge_collapse(surface, stop);
+  else
+    SMS::edge_collapse(surface, stop,
+                       CGAL::parameters::get_cost(UnevenCost(std::move(factors)))
+                           .get_placement(SMS::Midpoint_placement<SurfaceMesh>()));
   ScanSurface thinned;
   thinned.mesh = compact(from_surface_mesh(surface)).mesh;
   const NearestVertexIndex index(scan.mesh.vertices);

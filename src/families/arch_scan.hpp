@@ -33,6 +33,9 @@ void add_model_base(const ArchCrowns& arch, RandomStream& random, ArchFields& fi
 /// The surface of teeth and gum. @param soft  mm, how softly teeth run into each other and into the gum
 ScanSurface surface_of(const ArchCrowns& arch, const ArchFields& fields, double soft);
 
+/// Takes out pieces of fewer than `least` triangles, and vertices at which the surface is no disc.
+void drop_crumbs(ScanSurface& scan, std::size_t least);
+
 /// Gives the gum its small forms: bumps, folds of the palate.
 void form_gum(const ArchCrowns& arch, const ArchFields& fields, RandomStream& random, ScanSurface& scan);
 

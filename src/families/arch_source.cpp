@@ -7,6 +7,8 @@
 
 #include "families/crown_model.hpp"
 #include "families/model_crowns.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/nearest_vertex.hpp"
 #include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -67,6 +69,37 @@ RealCrown load_real(const std::filesystem::path& folder, std::size_t row, bool r
   }
   crown.place = centred(crown.mesh);
   return crown;
+}
+
+/// Fills in how the crown lies on a model's mean.
+void lay_on_model(const ArchCrownForm& form, RealCrown& crown) {
+  constexpr std::size_t around = 70;  // vertices, about 2 mm
+  const Eigen::AlignedBox3d from = bounding_box(crown.mesh.vertices), to = bounding_box(form.mean.vertices);
+  const Eigen::Vector3d scale = to.sizes().cwiseQuotient(from.sizes());
+  for (const Point& p : crown.mesh.vertices)
+    crown.as_mean.emplace_back((p - from.center()).cwiseProduct(scale) + to.center());
+  const NearestVertexIndex model(form.mean.vertices), own(crown.as_mean);
+  std::vector<Eigen::Vector3d> off;
+  for (const Point& p : crown.as_mean) {
+    const std::vector<NearVertex> near = model.nearest(p, 3);
+    std::array<std::pair<int, float>, 3> carriers;
+    double total = 0;
+    Point middle = Point::Zero();
+    for (const NearVertex& one : near) total += 1 / (0.05 + one.squared_distance);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double share = 1 / (0.05 + near[k].squared_distance) / total;
+      carriers[k] = {near[k].index, static_cast<float>(share)};
+      middle += share * form.mean.vertices[static_cast<std::size_t>(near[k].index)];
+    }
+    crown.carriers.push_back(carriers);
+    off.emplace_back(middle - p);
+  }
+  for (const Point& p : crown.as_mean) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    const std::vector<NearVertex> near = own.nearest(p, around);
+    for (const NearVertex& one : near) sum += off[static_cast<std::size_t>(one.index)] / static_cast<double>(around);
+    crown.to_mean.push_back(sum);
+  }
 }
 
 template <int Size>
@@ -135,8 +168,11 @@ ArchSource load_arch_source(const std::filesystem::path& crowns) {
   for (const char* name : {"patient0", "patient1"}) {
     if (!std::filesystem::is_directory(crowns / name)) continue;
     source.people.emplace_back();
-    for (std::size_t i = 0; i < 2 * arch_rows; ++i)
-      source.people.back()[i / 2][i % 2] = load_real(crowns / name, i / 2, i % 2 == 1);
+    tbb::parallel_for(std::size_t{0}, 2 * arch_rows, [&](std::size_t i) {
+      RealCrown& crown = source.people.back()[i / 2][i % 2];
+      crown = load_real(crowns / name, i / 2, i % 2 == 1);
+      lay_on_model(source.forms[i / 2][i % 2], crown);
+    });
   }
   return source;
 }

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <utility>
 #include <vector>
 
 // What generated arches are drawn from. A tooth of the left side is named by its row: 0 to 6 are 21 to 27, 7 to 13 are
@@ -29,6 +30,12 @@ struct ArchCrownForm {
 struct RealCrown {
   TriangleMesh mesh;            ///< closed, outward, about its middle, left side
   Point place = Point::Zero();  ///< of the middle, left side
+  /// Brought to the size of the mean crown of its side's model, along each axis; about the mean's middle.
+  std::vector<Point> as_mean;
+  /// Smooth displacement of each vertex of `as_mean` that brings it to the mean crown but for its finer forms.
+  std::vector<Eigen::Vector3d> to_mean;
+  /// Per vertex three of the model's vertices and their shares, to carry the modes over.
+  std::vector<std::array<std::pair<int, float>, 3>> carriers;
 };
 
 struct ArchSource {

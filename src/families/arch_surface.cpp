@@ -79,8 +79,8 @@ void form_gum(const ArchCrowns& arch, const ArchFields& fields, RandomStream& ra
   const NearestVertexIndex index(enamel);
   const std::vector<Eigen::Vector3d> normals = vertex_normals(scan.mesh);
   const WaveNoise bumps(random, 5, 16), small(random, 1.5, 4), bend(random, 8, 25);
-  const double bump_mm = random.uniform(0.1, 0.45), small_mm = random.uniform(0.01, 0.07);
-  const double fold_mm = arch.jaw == Jaw::upper ? random.uniform(0.1, 0.9) : 0, fold_length = random.uniform(3.0, 5.5);
+  const double bump_mm = random.uniform(0.05, 0.25), small_mm = random.uniform(0.01, 0.07);
+  const double fold_mm = arch.jaw == Jaw::upper ? random.uniform(0.05, 0.6) : 0, fold_length = random.uniform(3.0, 5.5);
   double front = -1e9, back = 1e9;
   for (const ArchCrown& crown : arch.crowns) {
     front = std::max(front, crown.to_work.translation().z());
@@ -98,9 +98,10 @@ void form_gum(const ArchCrowns& arch, const ArchFields& fields, RandomStream& ra
       // Folds behind the incisors, running to the sides, and a seam in the middle.
       const double behind = (front - p.z()) / (front - back), aside = std::abs(p.x() - middle);
       const double where =
-          smooth_step((behind - 0.1) / 0.12) * (1 - smooth_step((behind - 0.42) / 0.15)) * smooth_step((-off - 4) / 3);
-      const double phase = 2 * std::numbers::pi / fold_length * (p.z() - 0.25 * aside + 0.9 * bend(p));
-      lift += where * fold_mm * std::max(0.0, std::sin(phase)) * smooth_step((aside - 0.8) / 1.5);
+          smooth_step((behind - 0.1) / 0.12) * (1 - smooth_step((behind - 0.32) / 0.12)) * smooth_step((-off - 4) / 3);
+      const double phase = 2 * std::numbers::pi / fold_length * (p.z() - 0.25 * aside + 1.4 * bend(p));
+      lift += where * fold_mm * std::max(0.0, std::sin(phase)) * smooth_step((aside - 0.8) / 1.5) *
+              smooth_step(0.5 + 0.6 * bumps(p));
       lift += 0.5 * fold_mm * std::exp(-0.5 * aside * aside) * smooth_step((-off - 5) / 4);
     }
     p += lift * normals[v];

@@ -31,20 +31,6 @@ namespace {
 
 constexpr int types_with_models = 14, teeth_of_jaw = 7;
 
-TriangleMesh closed_surface(const std::vector<Point>& points) {
-  std::vector<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3> sites;
-  for (const Point& p : points) sites.emplace_back(p.x(), p.y(), p.z());
-  std::vector<std::array<std::size_t, 3>> facets;
-  CGAL::advancing_front_surface_reconstruction(sites.begin(), sites.end(), std::back_inserter(facets));
-  TriangleMesh mesh;
-  mesh.vertices = points;
-  for (const auto& f : facets)
-    mesh.triangles.push_back({static_cast<int>(f[0]), static_cast<int>(f[1]), static_cast<int>(f[2])});
-  if (volume(mesh) < 0)
-    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
-  return mesh;
-}
-
 /// Where the crown ends at the gum, around the axis: of each sector's outer points the lowest, for the cap is a
 /// membrane that may hang lower amid the crown but not at its rim.
 std::vector<Point> rim_of(const std::vector<Point>& points) {
@@ -131,6 +117,20 @@ ModelCrown model_crown(const CrownShapeModel& model, int type, const Eigen::Vect
 }
 
 }  // namespace
+
+TriangleMesh closed_surface(const std::vector<Point>& points) {
+  std::vector<CGAL::Exact_predicates_inexact_constructions_kernel::Point_3> sites;
+  for (const Point& p : points) sites.emplace_back(p.x(), p.y(), p.z());
+  std::vector<std::array<std::size_t, 3>> facets;
+  CGAL::advancing_front_surface_reconstruction(sites.begin(), sites.end(), std::back_inserter(facets));
+  TriangleMesh mesh;
+  mesh.vertices = points;
+  for (const auto& f : facets)
+    mesh.triangles.push_back({static_cast<int>(f[0]), static_cast<int>(f[1]), static_cast<int>(f[2])});
+  if (volume(mesh) < 0)
+    for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+  return mesh;
+}
 
 std::vector<ModelCrown> load_model_crowns(const std::filesystem::path& folder) {
   constexpr std::size_t all_modes = 40;

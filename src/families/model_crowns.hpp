@@ -21,6 +21,10 @@ struct ModelCrown {
   static constexpr double junction_above_rim_mm = 0.3;
 };
 
+/// A surface through points that lie close on one, turned outward, by advancing fronts (D. Cohen-Steiner, F. Da, "A
+/// greedy Delaunay-based surface reconstruction algorithm", 2004; CGAL). Vertices keep their order.
+TriangleMesh closed_surface(const std::vector<Point>& points);
+
 /// Reads folder/crown_ssm_FDI.safetensors for x1-x7 of all four quadrants, those of the right side mirrored, and meshes
 /// each model's mean points by advancing fronts (D. Cohen-Steiner, F. Da, "A greedy Delaunay-based surface
 /// reconstruction algorithm", 2004; CGAL).
