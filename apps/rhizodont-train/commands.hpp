@@ -11,5 +11,6 @@ namespace rhizodont::command_line {
 void add_completion_command(CLI::App& app);
 void add_skirt_command(CLI::App& app);
 void add_likeness_command(CLI::App& app);
+void add_segment_command(CLI::App& app);
 
 }  // namespace rhizodont::command_line

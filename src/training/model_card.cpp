@@ -64,4 +64,11 @@ std::string skirt_card(const WeightFile& weights) {
   return model_card(skirt_card_template, values);
 }
 
+std::string segment_card(const WeightFile& weights) {
+  std::map<std::string, std::string> values =
+      values_of(weights, {"samples", "accuracy", "tooth_gum", "jaw", "offset_mm", "turn_deg"});
+  values.try_emplace("training.pool", "N");  // a checkpoint does not say
+  return model_card(segment_card_template, values);
+}
+
 }  // namespace rhizodont

@@ -13,6 +13,7 @@ namespace rhizodont {
 /// used for. Values stand in them as {name}.
 extern const std::string_view completion_card_template;
 extern const std::string_view skirt_card_template;
+extern const std::string_view segment_card_template;
 
 /// A card with the value of each name in the place of {name}. Values are taken as they are.
 /// Throws InputError for a name that has no value and for a brace that is not closed.
@@ -25,9 +26,10 @@ struct WeightFile {
   std::map<std::string, std::string> metadata;  ///< what it says of itself
 };
 
-/// The card of weights of the completion network or of the skirt network. Figures of weights that were never validated
+/// The card of weights of the completion network, of the skirt network or of the one that finds teeth. Figures of weights that were never validated
 /// are "not measured". Throws InputError where the metadata lacks anything else that the card says.
 std::string completion_card(const WeightFile& weights);
 std::string skirt_card(const WeightFile& weights);
+std::string segment_card(const WeightFile& weights);
 
 }  // namespace rhizodont

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "networks/scan_sample.hpp"
+#include "rhizodont/mesh.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace rhizodont {
+
+/// A scan's frame: place in it = rotation * (place in the scan - origin).
+struct ScanFrame {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< proper
+  Point origin = Point::Zero();
+};
+
+/// Points that cover a scan evenly, whatever its triangles are.
+struct ScanPoints {
+  ScanCloud cloud;
+  std::vector<int> vertices;  ///< per point: a vertex of the scan beside it
+};
+
+/// One point for each half millimetre of surface or so, in a frame. Curvatures are by means over the points within 1 mm
+/// and 2.2 mm: positive in hollows. Triangles without area count for nothing. Throws InputError where none has one.
+ScanPoints scan_points(const TriangleMesh& scan, const ScanFrame& frame);
+
+/// The same points in a frame that is turned against theirs; the origin goes to their mean.
+ScanCloud turned(const ScanCloud& cloud, const Eigen::Matrix3d& rotation);
+
+/// A frame that turns and moves with the scan: z is the way that its surface faces on the whole, or, of a closed model,
+/// away from its flat base; y towards the part farthest from the middle. Origin: the surface's centroid. Throws
+/// InputError for a scan without area.
+ScanFrame first_frame(const TriangleMesh& scan);
+
+}  // namespace rhizodont
