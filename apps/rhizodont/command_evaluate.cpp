@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/output_checks.hpp"
 #include "commands.hpp"
+#include "evaluate_labels.hpp"
 #include "evaluation/calibration.hpp"
 #include "evaluation/evaluate_cases.hpp"
 #include "evaluation/evaluation_plot.hpp"
@@ -24,7 +25,7 @@ namespace rhizodont::command_line {
 namespace {
 
 struct EvaluateCommand {
-  std::string cases, templates, models, csv, plot, calibrate;
+  std::string cases, templates, models, csv, plot, calibrate, labels;
   JsonOption json;
   CompleteOptions options;
 };
@@ -202,7 +203,16 @@ void add_evaluate_command(CLI::App& app) {
       "Scale the intervals in this weight file (--models' completion.safetensors) to these teeth, which "
       "must not have been trained on");
   command->json.add_to(*evaluate);
-  evaluate->callback([command] { run(*command); });
+  evaluate->add_option("--labels", command->labels,
+                       "Instead: CASES_DIR has scans with true labels (SCAN.json) beside them; this folder has the "
+                       "labels to judge, a SCAN.json each");
+  evaluate->callback([command] {
+    if (!command->labels.empty()) {
+      evaluate_labels(command->cases, command->labels);
+      return;
+    }
+    run(*command);
+  });
 }
 
 }  // namespace rhizodont::command_line

@@ -2,12 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/jaw.hpp"
+
 namespace rhizodont {
-
-enum class Jaw { lower, upper };
-
-/// "lower" or "upper".
-inline const char* jaw_name(Jaw jaw) { return jaw == Jaw::upper ? "upper" : "lower"; }
 
 /// What the labels of a scan number teeth by. In all of them 0 is gum.
 enum class LabelNumbers {

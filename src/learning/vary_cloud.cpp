@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-#include "networks/point_grid.hpp"
+#include "networks/cloud_grid.hpp"
 
 namespace rhizodont {
 namespace {
@@ -44,7 +44,7 @@ std::vector<std::size_t> shown_points(const LabelledCloud& scan, const ScanVaria
       if (scan.teeth[i] != 0) append(teeth, row(scan.cloud.positions, i));
     if (!teeth.empty()) {
       const auto far = static_cast<float>(std::exp(random.uniform(std::log(1.5), std::log(15.0))));
-      const PointGrid grid(teeth, 2);
+      const CloudGrid grid(teeth, 2);
       const std::vector<std::int32_t> near = grid.nearest(scan.cloud.positions, 1);
       for (std::size_t i = 0; i < n; ++i)
         if ((row(teeth, static_cast<std::size_t>(near[i])) - row(scan.cloud.positions, i)).norm() > far)
@@ -106,7 +106,7 @@ void label(ShownScan& shown, const std::vector<std::uint8_t>& teeth, bool mirror
     ++count;
   }
   const std::vector<float>& positions = shown.pyramid.levels[0].positions;
-  const PointGrid grid(cloud.positions, scan_border_mm);
+  const CloudGrid grid(cloud.positions, scan_border_mm);
   for (std::size_t i = 0; i < chosen.size(); ++i) {
     const int tooth = teeth[static_cast<std::size_t>(chosen[i])];
     const int kind = scan_kind(tooth, shown.upper);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "networks/scan_sample.hpp"
 
-#include "networks/point_grid.hpp"
+#include "networks/cloud_grid.hpp"
 #include "rhizodont/error.hpp"
 
 #include <algorithm>
@@ -31,8 +31,7 @@ void weigh(const ScanLevel& fine, const ScanLevel& coarse, std::vector<float>& w
     for (std::size_t j = 3 * i; j < 3 * i + 3; ++j) {
       float squared = 1e-4F;
       for (std::size_t a = 0; a < 3; ++a) {
-        const float d =
-            fine.positions[3 * i + a] - coarse.positions[3 * static_cast<std::size_t>(fine.above[j]) + a];
+        const float d = fine.positions[3 * i + a] - coarse.positions[3 * static_cast<std::size_t>(fine.above[j]) + a];
         squared += d * d;
       }
       weights[j] = 1 / squared;
@@ -62,11 +61,11 @@ ScanPyramid scan_pyramid(const ScanCloud& cloud, const ScanShape& shape) {
     level.from = thinned(positions, spacing);
     level.positions = rows(positions, level.from, 3);
     level.normals = rows(normals, level.from, 3);
-    const PointGrid grid(level.positions, 1.3F * spacing);
+    const CloudGrid grid(level.positions, 1.3F * spacing);
     level.neighbours = grid.nearest(level.positions, shape.neighbours);
     if (l == 0) continue;
     ScanLevel& finer = pyramid.levels[l - 1];
-    const PointGrid fine_grid(finer.positions, 1.3e-3F * static_cast<float>(shape.spacings_um[l - 1]));
+    const CloudGrid fine_grid(finer.positions, 1.3e-3F * static_cast<float>(shape.spacings_um[l - 1]));
     level.below = fine_grid.nearest(level.positions, shape.neighbours);
     finer.above = grid.nearest(finer.positions, 3);
     weigh(finer, level, finer.above_weights);

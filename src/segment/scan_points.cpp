@@ -3,7 +3,7 @@
 #include "segment/scan_points.hpp"
 
 #include "mesh/geometry.hpp"
-#include "networks/point_grid.hpp"
+#include "networks/cloud_grid.hpp"
 #include "rhizodont/error.hpp"
 
 #include <Eigen/Geometry>
@@ -84,22 +84,22 @@ void add_point(const Piece* begin, const Piece* end, ScanPoints& points) {
   points.vertices.push_back(nearest->vertex);
 }
 
-Eigen::Vector3f row(const std::vector<float>& values, std::size_t i) {
+Eigen::Vector3f float_vector_at(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
 void add_curvatures(ScanCloud& cloud) {
   constexpr std::array<float, scan_curvature_count> widths{1.0F, 2.2F};
   cloud.curvatures.assign(scan_curvature_count * cloud.size(), 0);
-  const PointGrid grid(cloud.positions, 1.1F);
+  const CloudGrid grid(cloud.positions, 1.1F);
   tbb::parallel_for(std::size_t{0}, cloud.size(), [&](std::size_t i) {
-    const Eigen::Vector3f p = row(cloud.positions, i), n = row(cloud.normals, i);
+    const Eigen::Vector3f p = float_vector_at(cloud.positions, i), n = float_vector_at(cloud.normals, i);
     std::array<float, scan_curvature_count> sum{};
     std::array<int, scan_curvature_count> count{};
     grid.visit_near(p.data(), widths.back(), [&](std::int32_t j) {
       const auto k = static_cast<std::size_t>(j);
-      const Eigen::Vector3f d = row(cloud.positions, k) - p;
-      if (n.dot(row(cloud.normals, k)) < -0.3F) return;  // the other side of something thin
+      const Eigen::Vector3f d = float_vector_at(cloud.positions, k) - p;
+      if (n.dot(float_vector_at(cloud.normals, k)) < -0.3F) return;  // the other side of something thin
       const float distance = d.norm();
       for (std::size_t w = 0; w < widths.size(); ++w) {
         if (distance > widths[w]) continue;
@@ -153,10 +153,11 @@ ScanCloud turned(const ScanCloud& cloud, const Eigen::Matrix3d& rotation) {
   ScanCloud result = cloud;
   const Eigen::Matrix3f turn = rotation.cast<float>();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < cloud.size(); ++i) mean += row(cloud.positions, i).cast<double>();
+  for (std::size_t i = 0; i < cloud.size(); ++i) mean += vector_at(cloud.positions, i);
   const Eigen::Vector3f middle = (mean / static_cast<double>(cloud.size())).cast<float>();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3f p = turn * (row(cloud.positions, i) - middle), n = turn * row(cloud.normals, i);
+    const Eigen::Vector3f p = turn * (float_vector_at(cloud.positions, i) - middle),
+                          n = turn * float_vector_at(cloud.normals, i);
     for (std::size_t a = 0; a < 3; ++a) {
       result.positions[3 * i + a] = p[static_cast<Eigen::Index>(a)];
       result.normals[3 * i + a] = n[static_cast<Eigen::Index>(a)];

@@ -11,6 +11,11 @@
 
 namespace rhizodont {
 
+/// Number i of vectors that lie behind each other.
+inline Eigen::Vector3d vector_at(const std::vector<float>& xyz, std::size_t i) {
+  return Eigen::Vector3f(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]).cast<double>();
+}
+
 /// A scan's frame: place in it = rotation * (place in the scan - origin).
 struct ScanFrame {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< proper

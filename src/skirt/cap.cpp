@@ -6,12 +6,12 @@
 
 #include "skirt/cap.hpp"
 
+#include "base/minimum_cut.hpp"
 #include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "rhizodont/error.hpp"
-#include "skirt/minimum_cut.hpp"
 
 #include <fmt/format.h>
 

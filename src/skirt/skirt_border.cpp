@@ -7,13 +7,13 @@
 #include "skirt/skirt_border.hpp"
 
 #include "base/disjoint_sets.hpp"
+#include "base/minimum_cut.hpp"
 #include "base/option_range.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/border_pieces.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/handles.hpp"
 #include "rhizodont/error.hpp"
-#include "skirt/minimum_cut.hpp"
 
 #include <algorithm>
 #include <array>

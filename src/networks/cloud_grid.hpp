@@ -11,10 +11,10 @@ namespace rhizodont {
 
 /// Points of a surface in the cells of a grid: neighbours within a short way are found without a tree. `xyz` holds x,
 /// y, z of point 0, then of point 1 and so on, finite values; it must outlive the grid.
-class PointGrid {
+class CloudGrid {
  public:
   /// `cell`: edge of a cell, > 0; made larger where the grid would have more than some millions of cells.
-  PointGrid(std::span<const float> xyz, float cell);
+  CloudGrid(std::span<const float> xyz, float cell);
 
   /// Indices of the `k` points nearest to each query, nearest first, ties to the smaller index: queries x k. With fewer
   /// points than k, the nearest one stands in the places left. Throws UsageError if there are queries but no points.

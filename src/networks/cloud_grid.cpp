@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "networks/point_grid.hpp"
+#include "networks/cloud_grid.hpp"
 
 #include "rhizodont/error.hpp"
 
@@ -13,7 +13,7 @@
 
 namespace rhizodont {
 
-PointGrid::PointGrid(std::span<const float> xyz, float cell) : xyz_(xyz), cell_(cell) {
+CloudGrid::CloudGrid(std::span<const float> xyz, float cell) : xyz_(xyz), cell_(cell) {
   const std::size_t n = xyz.size() / 3;
   std::array<float, 3> high{};
   for (std::size_t a = 0; a < 3; ++a) {
@@ -44,12 +44,12 @@ PointGrid::PointGrid(std::span<const float> xyz, float cell) : xyz_(xyz), cell_(
     order_[static_cast<std::size_t>(next[cell_of_point[i]]++)] = static_cast<std::int32_t>(i);
 }
 
-int PointGrid::cell_of(float value, std::size_t axis) const {
+int CloudGrid::cell_of(float value, std::size_t axis) const {
   const float at = (value - low_[axis]) / cell_;
   return std::clamp(static_cast<int>(std::clamp(at, -1.0F, 1e7F)), 0, size_[axis] - 1);
 }
 
-void PointGrid::nearest_of(const float* query, int k, std::int32_t* result) const {
+void CloudGrid::nearest_of(const float* query, int k, std::int32_t* result) const {
   const std::size_t wanted = static_cast<std::size_t>(k);
   std::array<std::pair<float, std::int32_t>, 64> found;
   std::size_t count = 0;
@@ -89,7 +89,7 @@ void PointGrid::nearest_of(const float* query, int k, std::int32_t* result) cons
   for (std::size_t i = 0; i < wanted; ++i) result[i] = i < count ? found[i].second : found[0].second;
 }
 
-std::vector<std::int32_t> PointGrid::nearest(std::span<const float> queries_xyz, int k) const {
+std::vector<std::int32_t> CloudGrid::nearest(std::span<const float> queries_xyz, int k) const {
   const std::size_t queries = queries_xyz.size() / 3;
   if (queries > 0 && order_.empty()) throw UsageError("There is no point to look for.");
   if (k < 1 || k > 64) throw UsageError("From 1 to 64 neighbours can be looked for.");
@@ -113,9 +113,8 @@ std::vector<std::int32_t> thinned(std::span<const float> xyz, float spacing) {
       places[i].cell[2 - a] = static_cast<std::int32_t>(std::floor(xyz[3 * i + a] / spacing));
     places[i].point = static_cast<std::int32_t>(i);
   }
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) {
-    return std::tie(a.cell, a.point) < std::tie(b.cell, b.point);
-  });
+  std::sort(places.begin(), places.end(),
+            [](const Place& a, const Place& b) { return std::tie(a.cell, a.point) < std::tie(b.cell, b.point); });
   std::vector<std::int32_t> chosen;
   for (std::size_t begin = 0, end = 0; begin < n; begin = end) {
     std::array<float, 3> mean{};
@@ -126,7 +125,8 @@ std::vector<std::int32_t> thinned(std::span<const float> xyz, float spacing) {
     for (std::size_t i = begin; i < end; ++i) {
       float distance = 0;
       for (std::size_t a = 0; a < 3; ++a) {
-        const float d = xyz[3 * static_cast<std::size_t>(places[i].point) + a] - mean[a] / static_cast<float>(end - begin);
+        const float d =
+            xyz[3 * static_cast<std::size_t>(places[i].point) + a] - mean[a] / static_cast<float>(end - begin);
         distance += d * d;
       }
       if (distance < least) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-#include "skirt/minimum_cut.hpp"
+#include "base/minimum_cut.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 // Y. Boykov and V. Kolmogorov, "An experimental comparison of min-cut/max-flow algorithms for energy minimization in
 //   vision", IEEE Transactions on Pattern Analysis and Machine Intelligence 26(9), 2004; as implemented in Boost.
 
-#include "skirt/minimum_cut.hpp"
+#include "base/minimum_cut.hpp"
 
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/boykov_kolmogorov_max_flow.hpp>

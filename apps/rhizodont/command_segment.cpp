@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/output_checks.hpp"
+#include "commands.hpp"
+#include "io/scan_labels.hpp"
+#include "io/write_labels.hpp"
+#include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
+#include "rhizodont/models.hpp"
+#include "rhizodont/output_files.hpp"
+#include "rhizodont/segment.hpp"
+#include "rhizodont/units.hpp"
+#include "segment_options.hpp"
+#include "teeth/label_numbers.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace rhizodont::command_line {
+namespace {
+
+struct SegmentCommand {
+  std::string scan, output, models;
+  FoundTeethOptions teeth;
+  SegmentOptions options;
+  LabelNumbers numbers = LabelNumbers::fdi;
+  bool overwrite = false, quiet = false;
+};
+
+/// The labels in the dialect that the file's name asks for.
+std::string label_bytes(const SegmentCommand& command, const MeshFile& scan, const SegmentedScan& found) {
+  const std::string ending = std::filesystem::path(command.output).extension().string();
+  if (ending == ".json") return teeth3ds_json(found.fdi, found.jaw, scan);
+  const std::vector<int> numbers = numbered_as(found.fdi, command.numbers);
+  if (ending == ".vtp") return vtp_with_cell_labels(scan.mesh, triangle_labels_from_vertices(scan.mesh, numbers));
+  return vtk_with_point_labels(scan.mesh, numbered_as(found.fdi, LabelNumbers::universal));
+}
+
+void run(SegmentCommand& command) {
+  require_ending(command.output, {".json", ".vtp", ".vtk"}, "labels of a scan");
+  const std::filesystem::path models =
+      command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
+  std::vector<std::filesystem::path> inputs{command.scan};
+  for (const std::filesystem::path& file : segment_model_files(models)) inputs.push_back(file);
+  require_safe_outputs(inputs, {command.output});
+  require_new({command.output}, command.overwrite);
+  command.teeth.read_into(command.options);
+  const MeshFile scan = load_mesh(command.scan);
+  const SegmentedScan found = segment_scan(scan.mesh, SegmentModels::load(models), command.options);
+  write_output_files({{command.output, label_bytes(command, scan, found)}});
+  if (command.quiet) return;
+  for (const std::string& note : scan.notes) fmt::print("{}\n", note);
+  fmt::print("{}\n", found.jaw_reason);
+  for (const FoundTooth& tooth : found.teeth)
+    fmt::print("{}: {:.0f} %, {} vertices\n", tooth.fdi, 100 * tooth.confidence, tooth.vertices);
+  for (const std::string& note : found.notes) fmt::print("note: {}\n", note);
+  fmt::print("{} teeth; labels in {}\n", found.teeth.size(), command.output);
+}
+
+}  // namespace
+
+void add_segment_command(CLI::App& app) {
+  auto command = std::make_shared<SegmentCommand>();
+  CLI::App* segment = app.add_subcommand("segment", "Find and number the teeth of a scan without labels");
+  segment->add_option("SCAN", command->scan, "Scan of one jaw: .stl .ply .obj .off .vtp .vtk")->required();
+  segment
+      ->add_option("-o,--output", command->output,
+                   "Labels: .json (Teeth3DS, FDI), .vtp (cell array Label), .vtk (point array Universal_ID)")
+      ->required();
+  command->teeth.add_to(*segment);
+  segment->add_option_function<std::string>(
+      "--numbers", [command](const std::string& word) { command->numbers = read_label_numbers(word); },
+      "Numbers in a .vtp: fdi, universal, arch14, arch16");
+  segment
+      ->add_option_function<std::string>(
+          "--unit",
+          [command](const std::string& name) { command->options.millimetres_per_unit = millimetres_per_unit(name); },
+          "Unit of the scan's file: mm, cm, m, um, in, also in full and in capitals")
+      ->default_str("mm");
+  segment->add_flag("--overwrite", command->overwrite, "Replace a file that is there already");
+  segment->add_option("--threads", command->options.threads, "At most so many threads; 0 = all")->capture_default_str();
+  segment->add_option("--models", command->models, "Folder with segment.safetensors and arch.safetensors");
+  segment->add_flag("--quiet", command->quiet, "Print nothing but errors");
+  segment->callback([command] { run(*command); });
+}
+
+}  // namespace rhizodont::command_line

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+namespace rhizodont::command_line {
+
+/// Compares labels of scans with the true ones and prints figures. `scans`: a folder of meshes with SCAN.json
+/// (Teeth3DS) beside them; `found`: a folder with a SCAN.json each. A scan without found labels has no tooth found.
+/// Throws InputError where there is no scan with true labels, and as the readers do.
+void evaluate_labels(const std::filesystem::path& scans, const std::filesystem::path& found);
+
+}  // namespace rhizodont::command_line

@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "segment/teeth_reading.hpp"
+
+#include <Eigen/Geometry>
+
+namespace rhizodont {
+namespace {
+
+Eigen::Vector3d vector_of(const std::array<float, 3>& v) { return Eigen::Vector3f(v[0], v[1], v[2]).cast<double>(); }
+
+/// Turns what is read so that it stands as the network says.
+Eigen::Matrix3d upright(const ScanReading& said) {
+  Eigen::Vector3d z = vector_of(said.occlusal);
+  if (!(z.norm() > 1e-3)) z = Eigen::Vector3d::UnitZ();
+  z.normalize();
+  Eigen::Vector3d y = vector_of(said.front);
+  y -= z.dot(y) * z;
+  if (!(y.norm() > 1e-3)) y = z.unitOrthogonal();
+  y.normalize();
+  Eigen::Matrix3d turn;
+  turn.row(0) = y.cross(z);
+  turn.row(1) = y;
+  turn.row(2) = z;
+  return turn;
+}
+
+Eigen::Vector3d mean_of(const ScanCloud& cloud) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < cloud.size(); ++i) sum += vector_at(cloud.positions, i);
+  return sum / static_cast<double>(cloud.size());
+}
+
+}  // namespace
+
+Eigen::Vector3d TeethReading::place(std::size_t point) const { return vector_at(pyramid.levels[0].positions, point); }
+
+Eigen::Vector3d TeethReading::normal(std::size_t point) const { return vector_at(pyramid.levels[0].normals, point); }
+
+double TeethReading::probability(std::size_t point, int kind) const {
+  return static_cast<double>(said.kinds[scan_kind_count * point + static_cast<std::size_t>(kind)]);
+}
+
+Eigen::Vector3d TeethReading::vote(std::size_t point) const { return place(point) + vector_at(said.offsets, point); }
+
+TeethReading read_teeth(const TriangleMesh& scan, const ScanNetwork& network, int turns) {
+  TeethReading reading;
+  reading.frame = first_frame(scan);
+  ScanCloud& cloud = reading.cloud;
+  cloud = scan_points(scan, reading.frame).cloud;
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  for (int pass = 0; pass <= turns; ++pass) {
+    reading.frame.origin += reading.frame.rotation.transpose() * mean_of(cloud);
+    reading.frame.rotation = turn * reading.frame.rotation;
+    cloud = turned(cloud, turn);
+    reading.pyramid = scan_pyramid(cloud, network.shape());
+    reading.said = network.read(reading.pyramid);
+    turn = upright(reading.said);
+  }
+  return reading;
+}
+
+}  // namespace rhizodont
