@@ -103,8 +103,7 @@ void add_segment_command(CLI::App& app) {
       make_samples(*command);
       return;
     }
-    if (command->options.loop.folder.empty())
-      throw UsageError("Training needs a folder for its checkpoints (--out).");
+    if (command->options.loop.folder.empty()) throw UsageError("Training needs a folder for its checkpoints (--out).");
     train(*command);
   });
 }

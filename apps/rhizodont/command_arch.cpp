@@ -9,6 +9,7 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/output_files.hpp"
 #include "rhizodont/report.hpp"
+#include "rhizodont/segment.hpp"
 #include "teeth/fdi.hpp"
 #include "teeth/label_numbers.hpp"
 
@@ -70,6 +71,19 @@ void print_summary(const CompletedArch& arch) {
   }
 }
 
+/// Teeth of a scan without labels.
+RawLabels found_labels(const MeshFile& scan, const ArchCommand& command, const std::filesystem::path& models,
+                       std::vector<std::string>& notes) {
+  SegmentOptions options;
+  options.millimetres_per_unit = command.options.tooth.millimetres_per_unit;
+  options.jaw = command.source.jaw;
+  options.threads = command.options.tooth.threads;
+  SegmentedScan found = segment_scan(scan.mesh, SegmentModels::load(models), options);
+  notes.push_back(found.jaw_reason);
+  notes.insert(notes.end(), found.notes.begin(), found.notes.end());
+  return {std::move(found.fdi), "a search for the teeth in the scan", found.jaw, LabelNumbers::fdi};
+}
+
 void run(ArchCommand& command) {
   for (const std::string& length : command.lengths) add_length(length, command.options.root_lengths);
   const std::filesystem::path models =
@@ -82,7 +96,11 @@ void run(ArchCommand& command) {
         throw UsageError(fmt::format("Tooth {} has two root lengths.", fdi));
   }
   for (const std::filesystem::path& file : model_files(models)) inputs.push_back(file);
-  const ScanInput input = read_scan(command.scan, command.source, command.options.tooth.millimetres_per_unit);
+  std::vector<std::string> found_notes;
+  if (std::filesystem::exists(segment_model_files(models).front()))
+    command.source.find = [&](const MeshFile& scan) { return found_labels(scan, command, models, found_notes); };
+  ScanInput input = read_scan(command.scan, command.source, command.options.tooth.millimetres_per_unit);
+  input.notes.insert(input.notes.end(), found_notes.begin(), found_notes.end());
   const std::vector<std::filesystem::path> names = arch_file_names(input.scan, command.files, command.output);
   require_safe_outputs(inputs, names);
   require_new(names, command.overwrite);

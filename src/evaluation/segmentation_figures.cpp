@@ -73,14 +73,14 @@ void compare_places(const std::map<int, Labelled>& truth, const std::map<int, La
         nearest = d;
         said = number;
       }
-    const double size = std::max(tooth.size(), 1e-9);
-    if (nearest > size / 2) {
+    const double extent = std::max(tooth.size(), 1e-9);
+    if (nearest > extent / 2) {
       sum += not_found;
       continue;
     }
     ++matched;
     right += said == fdi ? 1 : 0;
-    sum += nearest / size;
+    sum += nearest / extent;
   }
   figures.tla = truth.empty() ? 1 : std::exp(-sum / static_cast<double>(truth.size()));
   figures.tir = matched == 0 ? (truth.empty() ? 1 : 0) : static_cast<double>(right) / static_cast<double>(matched);

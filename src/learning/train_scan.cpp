@@ -36,18 +36,25 @@ void require_in_range(const ScanTrainingOptions& options) {
 
 /// What held-out scans are shown with.
 ScanVariation little_variation() {
-  return {.any_turn_share = 0, .turn = 0.05, .tilt = 0.05, .strong_tilt_share = 0, .size = 0, .bend = 0,
-          .crop_share = 0, .trim_share = 0, .noise_mm = 0};
+  return {.any_turn_share = 0,
+          .turn = 0.05,
+          .tilt = 0.05,
+          .strong_tilt_share = 0,
+          .size = 0,
+          .bend = 0,
+          .crop_share = 0,
+          .trim_share = 0,
+          .noise_mm = 0};
 }
 
 /// A shown scan as tensors.
 struct ScanExample {
   ScanTensors scan;
-  torch::Tensor kinds;                     // int64, n
-  torch::Tensor middles;                   // float, n x 3
-  torch::Tensor borders;                   // float, n
-  torch::Tensor upper;                     // float, 1
-  torch::Tensor directions;                // float, 6
+  torch::Tensor kinds;       // int64, n
+  torch::Tensor middles;     // float, n x 3
+  torch::Tensor borders;     // float, n
+  torch::Tensor upper;       // float, 1
+  torch::Tensor directions;  // float, 6
 };
 
 ScanExample to_example(const ShownScan& shown, const ScanShape& shape) {
@@ -127,9 +134,9 @@ TrainingShare ScanTraining::share(std::uint64_t first, int count) {
     const LossParts loss = loss_of(network->forward(example.scan), example);
     const auto gradients = torch::autograd::grad({loss.total}, parameters, {}, c10::nullopt, false, true);
     share.loss += loss.total.item<double>() / count;
-    for (const auto& [name, part] : {std::pair("kinds", &loss.kinds), std::pair("offsets", &loss.offsets),
-                                     std::pair("borders", &loss.borders), std::pair("jaw", &loss.jaw),
-                                     std::pair("directions", &loss.directions)})
+    for (const auto& [name, part] :
+         {std::pair("kinds", &loss.kinds), std::pair("offsets", &loss.offsets), std::pair("borders", &loss.borders),
+          std::pair("jaw", &loss.jaw), std::pair("directions", &loss.directions)})
       share.terms[name] += part->item<double>() / count;
     if (sample == first) {
       share.gradients = gradients;
@@ -174,8 +181,8 @@ Validation ScanTraining::validate() {
   if (f.accuracy > best.accuracy) best = f;
   Validation validation;
   validation.selection = f.accuracy;
-  validation.figures = {{"loss", f.loss}, {"accuracy", f.accuracy}, {"tooth_gum", f.tooth_gum}, {"jaw", f.jaw},
-                        {"offset_mm", f.offset_mm}, {"turn_deg", f.turn_deg}};
+  validation.figures = {{"loss", f.loss}, {"accuracy", f.accuracy},   {"tooth_gum", f.tooth_gum},
+                        {"jaw", f.jaw},   {"offset_mm", f.offset_mm}, {"turn_deg", f.turn_deg}};
   validation.notes["validation.samples"] = std::to_string(count);
   for (const auto& [name, value] : validation.figures) validation.notes["validation." + name] = std::to_string(value);
   return validation;

@@ -34,15 +34,15 @@ inline TrainingLoopOptions scan_training_loop() {
 
 /// How much scans differ each time they are seen. Deviations are of normal distributions.
 struct ScanVariation {
-  double any_turn_share = 0.3;    ///< 0..1: turned about z at random; the others by `turn`
-  double turn = 0.15;             ///< rad, >= 0
-  double tilt = 0.1;              ///< rad, >= 0
+  double any_turn_share = 0.3;      ///< 0..1: turned about z at random; the others by `turn`
+  double turn = 0.15;               ///< rad, >= 0
+  double tilt = 0.1;                ///< rad, >= 0
   double strong_tilt_share = 0.25;  ///< 0..1: with three times the tilt
-  double size = 0.05;             ///< of the logarithm of the size, and of each axis, >= 0
-  double bend = 0.02;             ///< slope of smooth displacements, >= 0
-  double crop_share = 0.12;       ///< 0..1: a part of the arch
-  double trim_share = 0.5;        ///< 0..1: gum far from teeth is cut off
-  double noise_mm = 0.03;         ///< >= 0
+  double size = 0.05;               ///< of the logarithm of the size, and of each axis, >= 0
+  double bend = 0.02;               ///< slope of smooth displacements, >= 0
+  double crop_share = 0.12;         ///< 0..1: a part of the arch
+  double trim_share = 0.5;          ///< 0..1: gum far from teeth is cut off
+  double noise_mm = 0.03;           ///< >= 0
 };
 
 /// Settings of `train_scan`.

@@ -15,10 +15,10 @@ namespace rhizodont {
 
 /// What the network says of a scan.
 struct ScanReading {
-  std::vector<float> kinds;    ///< scan_kind_count per point of the finest level: probabilities
-  std::vector<float> offsets;  ///< 3 per point: way to the middle of its tooth, mm
-  std::vector<float> borders;  ///< per point: probability that another tooth or gum is near
-  float upper = 0;             ///< probability that this is an upper jaw
+  std::vector<float> kinds;                  ///< scan_kind_count per point of the finest level: probabilities
+  std::vector<float> offsets;                ///< 3 per point: way to the middle of its tooth, mm
+  std::vector<float> borders;                ///< per point: probability that another tooth or gum is near
+  float upper = 0;                           ///< probability that this is an upper jaw
   std::array<float, 3> front{}, occlusal{};  ///< directions in the cloud's frame, of any length
 };
 

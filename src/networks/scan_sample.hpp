@@ -35,12 +35,12 @@ inline constexpr int scan_summary_count = 7;
 
 /// Points of one level. Indices "below" are of the next finer level, for the finest of the cloud.
 struct ScanLevel {
-  std::vector<std::int32_t> from;        ///< per point: itself below
-  std::vector<float> positions, normals; ///< 3 per point
-  std::vector<std::int32_t> neighbours;  ///< `ScanShape::neighbours` per point, itself first
-  std::vector<std::int32_t> below;       ///< as many, around it below; empty for the finest level
-  std::vector<std::int32_t> above;       ///< 3 per point: those of the next coarser level around it; empty for the last
-  std::vector<float> above_weights;      ///< 3 per point, sum 1
+  std::vector<std::int32_t> from;         ///< per point: itself below
+  std::vector<float> positions, normals;  ///< 3 per point
+  std::vector<std::int32_t> neighbours;   ///< `ScanShape::neighbours` per point, itself first
+  std::vector<std::int32_t> below;        ///< as many, around it below; empty for the finest level
+  std::vector<std::int32_t> above;   ///< 3 per point: those of the next coarser level around it; empty for the last
+  std::vector<float> above_weights;  ///< 3 per point, sum 1
 
   std::size_t size() const { return from.size(); }
 };

@@ -44,8 +44,7 @@ void note_scan_shape(const ScanShape& shape, std::map<std::string, std::string>&
   for (const auto& [name, member] : level_sizes)
     for (std::size_t level = 0; level < ScanShape::levels; ++level)
       metadata[level_key(name, level)] = std::to_string((shape.*member)[level]);
-  for (const auto& [name, member] : scan_sizes)
-    metadata["shape." + std::string(name)] = std::to_string(shape.*member);
+  for (const auto& [name, member] : scan_sizes) metadata["shape." + std::string(name)] = std::to_string(shape.*member);
 }
 
 ScanShape read_scan_shape(const std::map<std::string, std::string>& metadata) {
@@ -56,8 +55,7 @@ ScanShape read_scan_shape(const std::map<std::string, std::string>& metadata) {
   for (const auto& [name, member] : level_sizes)
     for (std::size_t level = 0; level < ScanShape::levels; ++level)
       (shape.*member)[level] = number_in(metadata, level_key(name, level));
-  for (const auto& [name, member] : scan_sizes)
-    shape.*member = number_in(metadata, "shape." + std::string(name));
+  for (const auto& [name, member] : scan_sizes) shape.*member = number_in(metadata, "shape." + std::string(name));
   try {
     check_scan_shape(shape);
   } catch (const UsageError& error) {
@@ -67,8 +65,8 @@ ScanShape read_scan_shape(const std::map<std::string, std::string>& metadata) {
 }
 
 void check_scan_shape(const ScanShape& shape) {
-  bool good = shape.neighbours >= 4 && shape.neighbours <= 64 && shape.heads >= 1 &&
-              shape.widths.back() % shape.heads == 0;
+  bool good =
+      shape.neighbours >= 4 && shape.neighbours <= 64 && shape.heads >= 1 && shape.widths.back() % shape.heads == 0;
   for (std::size_t level = 0; level < ScanShape::levels; ++level) {
     good = good && shape.widths[level] >= 8 && shape.widths[level] <= 1024 && shape.widths[level] % 8 == 0 &&
            shape.blocks[level] >= 0 && shape.blocks[level] <= 16 && shape.spacings_um[level] >= 200 &&

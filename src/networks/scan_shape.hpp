@@ -11,11 +11,11 @@ namespace rhizodont {
 /// Sizes of the network that finds teeth in a scan. The defaults are those of the shipped weights.
 struct ScanShape {
   static constexpr int levels = 4;
-  std::array<int, levels> widths{32, 64, 128, 192};     ///< channels, finest level first, 8..1024, multiples of 8
-  std::array<int, levels> blocks{2, 2, 2, 2};           ///< edge convolutions before going up again, 0..16
+  std::array<int, levels> widths{32, 64, 128, 192};  ///< channels, finest level first, 8..1024, multiples of 8
+  std::array<int, levels> blocks{2, 2, 2, 2};        ///< edge convolutions before going up again, 0..16
   std::array<int, levels> spacings_um{1100, 2200, 4400, 8800};  ///< of the points, micrometres, growing, 200..50000
-  int neighbours = 16;                                  ///< that a point looks at, 4..64
-  int heads = 4;                                        ///< of the coarsest level's attention, divides its width
+  int neighbours = 16;                                          ///< that a point looks at, 4..64
+  int heads = 4;  ///< of the coarsest level's attention, divides its width
 };
 
 /// Sizes in a file's metadata.

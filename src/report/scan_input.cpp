@@ -3,7 +3,6 @@
 #include "report/scan_input.hpp"
 
 #include "base/lower_case.hpp"
-#include "io/scan_labels.hpp"
 #include "mesh/append_mesh.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/report.hpp"
@@ -130,6 +129,7 @@ RawLabels raw_labels(const fs::path& scan, const MeshFile& file, const ScanLabel
                                reading(source.palette, [](const std::string& text) { return read_palette(text); }));
   if (!source.array.empty() || has_label_array(file)) return labels_from_array(file, source.array);
   if (is_there(beside(scan))) return reading(beside(scan), from_file);
+  if (source.find) return source.find(file);
   throw InputError(
       "Nothing tells this scan's teeth apart: it has no array of labels, and no file of labels lies beside it. Name "
       "one "

@@ -3,11 +3,13 @@
 #pragma once
 
 #include "base/tooth_labels.hpp"
+#include "io/scan_labels.hpp"
 #include "rhizodont/arch.hpp"
 #include "rhizodont/io.hpp"
 #include "teeth/clean_labels.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,6 +24,8 @@ struct ScanLabelSource {
   std::optional<LabelNumbers> numbers;
   std::optional<Jaw> jaw;
   std::optional<bool> first_is_patients_right;  ///< of numbers along the arch
+  /// Finds the teeth of a scan that nothing tells apart; empty: such a scan is refused.
+  std::function<RawLabels(const MeshFile& scan)> find;
 };
 
 /// A scan with its teeth, as read.
@@ -36,10 +40,10 @@ struct ScanInput {
 };
 
 /// Reads a scan and finds its labels: those that the source names, else the scan's own array, else a Teeth3DS file of
-/// the same name beside it (SCAN.json). A folder holds a crown a file, with the tooth's number in its name: 36, UR1,
-/// id_3 (universal); other files there are passed over, and named. Labels are decided, cleaned, and given as FDI
-/// numbers. Throws InputError, its vertices numbered as in the file, where there are none, or as the readers do;
-/// UsageError for more than one source.
+/// the same name beside it (SCAN.json), else what the source finds. A folder holds a crown a file, with the tooth's
+/// number in its name: 36, UR1, id_3 (universal); other files there are passed over, and named. Labels are decided,
+/// cleaned, and given as FDI numbers. Throws InputError, its vertices numbered as in the file, where there are none, or
+/// as the readers do; UsageError for more than one source.
 /// @param millimetres_per_unit  of the scan: what is too small for a tooth is told in mm. The scan keeps its unit
 ScanInput read_scan(const std::filesystem::path& scan, const ScanLabelSource& source = {},
                     double millimetres_per_unit = 1);

@@ -7,19 +7,14 @@
 #include "networks/scan_network.hpp"
 #include "rhizodont/error.hpp"
 #include "segment/arch_model.hpp"
-#include "segment/numbering.hpp"
+#include "segment/label_scan.hpp"
 #include "segment/teeth_reading.hpp"
-#include "segment/tooth_borders.hpp"
-#include "segment/tooth_instances.hpp"
-#include "teeth/clean_labels.hpp"
 #include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 namespace rhizodont {
 
@@ -29,14 +24,6 @@ struct SegmentModels::Content {
 };
 
 namespace {
-
-/// What is measured of the jaw beside what the network says.
-struct JawDecision {
-  Jaw jaw = Jaw::lower;
-  double confidence = 0;
-  std::string reason;
-  ArchNumbers numbers;
-};
 
 void require_in_range(const SegmentOptions& options) {
   require_ranges("the search for teeth", {{"millimetres_per_unit", options.millimetres_per_unit, OptionRange::above(0)},
@@ -81,120 +68,6 @@ void require_size(const TriangleMesh& scan) {
         "This is {:.0f} mm across: too large for a jaw. If the scan is in another unit, say so (--unit).", across));
 }
 
-double log_odds(double p) {
-  const double q = std::clamp(p, 1e-4, 1 - 1e-4);
-  return std::log(q / (1 - q));
-}
-
-JawDecision decide_jaw(const TeethReading& reading, const ToothInstances& found, const ArchModel& arch,
-                       const SegmentOptions& options, const NumberingOptions& numbering) {
-  JawDecision decision;
-  if (options.jaw) {
-    decision.jaw = *options.jaw;
-    decision.confidence = 1;
-    decision.reason = fmt::format("The {} jaw, as was said.", jaw_name(decision.jaw));
-    decision.numbers = number_teeth(found.teeth, decision.jaw, arch, numbering);
-    return decision;
-  }
-  if (!numbering.given.empty()) {
-    const int fdi = numbering.given.begin()->second;
-    SegmentOptions stated = options;
-    stated.jaw = fdi < 30 ? Jaw::upper : Jaw::lower;
-    decision = decide_jaw(reading, found, arch, stated, numbering);
-    decision.reason = fmt::format("The {} jaw, for tooth {} was said to be there.", jaw_name(decision.jaw), fdi);
-    return decision;
-  }
-  ArchNumbers upper = number_teeth(found.teeth, Jaw::upper, arch, numbering);
-  ArchNumbers lower = number_teeth(found.teeth, Jaw::lower, arch, numbering);
-  constexpr double distance_trust = 0.5;  // distances between neighbours are not independent
-  const double by_network = log_odds(static_cast<double>(reading.said.upper));
-  const double by_distances = distance_trust * (upper.evidence - lower.evidence);
-  const double odds = by_network + by_distances;
-  decision.jaw = odds > 0 ? Jaw::upper : Jaw::lower;
-  decision.confidence = 1 / (1 + std::exp(-std::abs(odds)));
-  const double sign = odds > 0 ? 1 : -1;
-  decision.reason = fmt::format(
-      "The {} jaw: {} by its form as the network sees it ({:.0f} %), {} by the distances between its teeth.",
-      jaw_name(decision.jaw), sign * by_network > 0 ? "so" : "not so", 100 / (1 + std::exp(-sign * by_network)),
-      sign * by_distances > 0.2    ? "so"
-      : sign * by_distances < -0.2 ? "not so"
-                                   : "open");
-  decision.numbers = odds > 0 ? std::move(upper) : std::move(lower);
-  return decision;
-}
-
-/// The tooth that each click means.
-std::map<std::size_t, int> clicked_teeth(const TeethReading& reading, const ToothInstances& found,
-                                         const std::vector<std::pair<int, Eigen::Vector3d>>& clicks) {
-  std::map<std::size_t, int> given;
-  for (const auto& [fdi, click] : clicks) {
-    std::vector<double> scores(found.teeth.size(), 0);
-    for (std::size_t i = 0; i < reading.size(); ++i) {
-      const double near = std::exp(-(reading.place(i) - click).squaredNorm() / 2);
-      if (near < 1e-3) continue;
-      for (std::size_t t = 0; t < found.teeth.size(); ++t) scores[t] += near * found.share(i, t);
-    }
-    const auto best = std::max_element(scores.begin(), scores.end());
-    if (best == scores.end() || !(*best > 0))
-      throw InputError(fmt::format("There is no surface where tooth {} should be.", fdi));
-    const auto tooth = static_cast<std::size_t>(best - scores.begin());
-    const auto [entry, fresh] = given.emplace(tooth, fdi);
-    if (!fresh) throw InputError(fmt::format("The places of teeth {} and {} are on one tooth.", entry->second, fdi));
-  }
-  return given;
-}
-
-/// Without what was found to be no tooth.
-ToothInstances numbered_only(const ToothInstances& found, const ArchNumbers& numbers, std::size_t points,
-                             std::vector<ToothNumber>& kept) {
-  ToothInstances result;
-  std::vector<std::size_t> chosen;
-  for (std::size_t t = 0; t < found.teeth.size(); ++t)
-    if (numbers.teeth[t].fdi) {
-      chosen.push_back(t);
-      result.teeth.push_back(found.teeth[t]);
-      kept.push_back(numbers.teeth[t]);
-    }
-  for (std::size_t i = 0; i < points; ++i)
-    for (const std::size_t t : chosen) result.shares.push_back(found.share(i, t));
-  return result;
-}
-
-constexpr std::size_t least_teeth = 3;
-
-void require_arch(const std::vector<ToothNumber>& teeth) {
-  if (teeth.empty()) throw InputError("No tooth was found: this is no scan of an arch of teeth.");
-  if (teeth.size() < least_teeth)
-    throw InputError(
-        fmt::format("Only {} {} found: this is no scan of an arch of teeth. A single crown goes to complete.",
-                    teeth.size(), teeth.size() == 1 ? "tooth was" : "teeth were"));
-}
-
-void describe_teeth(const TriangleMesh& scan, const std::vector<ToothNumber>& numbers, SegmentedScan& result) {
-  for (const ToothNumber& number : numbers) {
-    FoundTooth tooth;
-    tooth.fdi = *number.fdi;
-    tooth.confidence = number.probability;
-    tooth.second = number.second;
-    tooth.second_confidence = number.second_probability;
-    for (std::size_t v = 0; v < scan.vertices.size(); ++v)
-      if (result.fdi[v] == tooth.fdi) {
-        tooth.middle += scan.vertices[v];
-        ++tooth.vertices;
-      }
-    if (tooth.vertices == 0) continue;
-    tooth.middle /= static_cast<double>(tooth.vertices);
-    constexpr double sure = 0.8;
-    if (tooth.confidence < sure)
-      result.notes.push_back(tooth.second
-                                 ? fmt::format("Tooth {} may be {} ({:.0f} % against {:.0f} %).", tooth.fdi,
-                                               *tooth.second, 100 * tooth.confidence, 100 * tooth.second_confidence)
-                                 : fmt::format("Tooth {} is doubtful ({:.0f} %).", tooth.fdi, 100 * tooth.confidence));
-    result.teeth.push_back(tooth);
-  }
-  std::sort(result.teeth.begin(), result.teeth.end(), [](const auto& a, const auto& b) { return a.fdi < b.fdi; });
-}
-
 }  // namespace
 
 SegmentModels::SegmentModels(std::shared_ptr<const Content> content) : content_(std::move(content)) {}
@@ -220,35 +93,7 @@ SegmentedScan segment_scan(const TriangleMesh& scan, const SegmentModels& models
   const TriangleMesh mesh = usable(scan, options.millimetres_per_unit);
   require_size(mesh);
   const SegmentModels::Content& content = models.content();
-  const TeethReading reading = read_teeth(mesh, content.network);
-
-  InstanceOptions instances;
-  std::vector<std::pair<int, Eigen::Vector3d>> clicks;
-  for (const auto& [fdi, place] : options.teeth) {
-    clicks.emplace_back(fdi, reading.frame.rotation * (options.millimetres_per_unit * place - reading.frame.origin));
-    instances.clicks.push_back(clicks.back().second);
-  }
-  const ToothInstances found = find_instances(reading, instances);
-  NumberingOptions numbering;
-  numbering.missing_teeth = options.missing;
-  numbering.given = clicked_teeth(reading, found, clicks);
-  const JawDecision decision = decide_jaw(reading, found, content.arch, options, numbering);
-
-  SegmentedScan result;
-  result.jaw = decision.jaw;
-  result.jaw_confidence = decision.confidence;
-  result.jaw_reason = decision.reason;
-  std::vector<ToothNumber> numbers;
-  const ToothInstances teeth = numbered_only(found, decision.numbers, reading.size(), numbers);
-  require_arch(numbers);
-  std::vector<int> labels = draw_borders(mesh, reading, teeth);
-  keep_largest_pieces(mesh, labels);
-  for (const int label : labels) result.fdi.push_back(label < 0 ? 0 : *numbers[static_cast<std::size_t>(label)].fdi);
-  result.fdi = clean_labels(mesh, result.fdi).fdi;
-  describe_teeth(scan, numbers, result);
-  constexpr double sure_jaw = 0.9;
-  if (decision.confidence < sure_jaw) result.notes.push_back("Which jaw this is, is doubtful: --jaw settles it.");
-  return result;
+  return label_scan(mesh, read_teeth(mesh, content.network), content.arch, options);
 }
 
 }  // namespace rhizodont

@@ -5,7 +5,6 @@
 #include "mesh/geometry.hpp"
 #include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
-#include "segment/scan_points.hpp"
 
 #include <Eigen/Geometry>
 
@@ -13,17 +12,6 @@
 
 namespace rhizodont {
 namespace {
-
-/// z occlusal, y to the front, as the network's frame; of a generated scan.
-ScanFrame true_frame(const GeneratedArch& arch) {
-  const bool upper = arch.jaw == Jaw::upper;
-  const Eigen::Vector3d occlusal(0, upper ? -1 : 1, 0), front(0, 0, 1);
-  Eigen::Matrix3d in_arch;
-  in_arch.row(0) = front.cross(occlusal);
-  in_arch.row(1) = front;
-  in_arch.row(2) = occlusal;
-  return {in_arch * arch.rotation.transpose(), area_centroid(arch.scan)};
-}
 
 std::vector<std::int64_t> of_size(std::size_t n, std::int64_t each) { return {static_cast<std::int64_t>(n), each}; }
 
@@ -55,6 +43,16 @@ LabelledCloud load(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+ScanFrame true_frame(const GeneratedArch& arch) {
+  const bool upper = arch.jaw == Jaw::upper;
+  const Eigen::Vector3d occlusal(0, upper ? -1 : 1, 0), front(0, 0, 1);
+  Eigen::Matrix3d in_arch;
+  in_arch.row(0) = front.cross(occlusal);
+  in_arch.row(1) = front;
+  in_arch.row(2) = occlusal;
+  return {in_arch * arch.rotation.transpose(), area_centroid(arch.scan)};
+}
 
 LabelledCloud make_arch_cloud(const ArchFamily& family, std::uint64_t seed) {
   const GeneratedArch arch = sample_arch(family, seed);

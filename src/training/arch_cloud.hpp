@@ -4,11 +4,15 @@
 
 #include "families/arch_family.hpp"
 #include "networks/labelled_cloud.hpp"
+#include "segment/scan_points.hpp"
 
 #include <cstdint>
 #include <filesystem>
 
 namespace rhizodont {
+
+/// The frame of the network that finds teeth in a generated scan, as it truly is: z occlusal, y to the front.
+ScanFrame true_frame(const GeneratedArch& arch);
 
 /// Generated scan number `seed` as the network that finds teeth is trained on it: points in the true frame, with the
 /// teeth that they belong to. Depends on its arguments alone. Throws as sample_arch and scan_points.

@@ -26,8 +26,9 @@ struct WeightFile {
   std::map<std::string, std::string> metadata;  ///< what it says of itself
 };
 
-/// The card of weights of the completion network, of the skirt network or of the one that finds teeth. Figures of weights that were never validated
-/// are "not measured". Throws InputError where the metadata lacks anything else that the card says.
+/// The card of weights of the completion network, of the skirt network or of the one that finds teeth. Figures of
+/// weights that were never validated are "not measured". Throws InputError where the metadata lacks anything else that
+/// the card says.
 std::string completion_card(const WeightFile& weights);
 std::string skirt_card(const WeightFile& weights);
 std::string segment_card(const WeightFile& weights);
