@@ -12,7 +12,7 @@
 namespace rhizodont {
 namespace {
 
-const ArchModel& shipped() {
+const ArchModel& mean_arch() {
   static const ArchModel model =
       load_arch_model(std::filesystem::path(RHIZODONT_SOURCE_DIR) / "models" / "arch.safetensors");
   return model;
@@ -21,7 +21,7 @@ const ArchModel& shipped() {
 /// A tooth where the model has it, with what a network would say of it: mostly right, neighbours less likely.
 ToothInstance tooth(int fdi, double sure = 0.7) {
   const bool upper = fdi < 30;
-  const Point& p = shipped().teeth.at(fdi).place;
+  const Point& p = mean_arch().teeth.at(fdi).place;
   ToothInstance instance;
   instance.middle = {upper ? p.x() : -p.x(), p.z(), upper ? -p.y() : p.y()};
   instance.support = 50;
@@ -57,9 +57,9 @@ TEST(Numbering, PlacesAndNumbersAreInverse) {
 
 TEST(Numbering, ReadsWholeArchesInAnyOrder) {
   const std::vector<int> upper{21, 17, 12, 11, 16, 15, 14, 13, 27, 26, 25, 24, 23, 22};
-  EXPECT_EQ(numbers_of(number_teeth(teeth(upper), Jaw::upper, shipped())), upper);
+  EXPECT_EQ(numbers_of(number_teeth(teeth(upper), Jaw::upper, mean_arch())), upper);
   const std::vector<int> lower{37, 36, 35, 34, 33, 32, 31, 41, 42, 43, 44, 45, 46, 47};
-  const ArchNumbers read = number_teeth(teeth(lower), Jaw::lower, shipped());
+  const ArchNumbers read = number_teeth(teeth(lower), Jaw::lower, mean_arch());
   EXPECT_EQ(numbers_of(read), lower);
   for (const ToothNumber& n : read.teeth) {
     EXPECT_GT(n.probability, 0.9);
@@ -69,21 +69,21 @@ TEST(Numbering, ReadsWholeArchesInAnyOrder) {
 
 TEST(Numbering, LeavesOutWhatIsMissing) {
   const std::vector<int> upper{17, 16, 15, 13, 12, 11, 21, 22, 23, 25, 26, 27};
-  EXPECT_EQ(numbers_of(number_teeth(teeth(upper), Jaw::upper, shipped())), upper);
+  EXPECT_EQ(numbers_of(number_teeth(teeth(upper), Jaw::upper, mean_arch())), upper);
   const std::vector<int> part{34, 35, 36, 37};
-  EXPECT_EQ(numbers_of(number_teeth(teeth(part), Jaw::lower, shipped())), part);
+  EXPECT_EQ(numbers_of(number_teeth(teeth(part), Jaw::lower, mean_arch())), part);
 }
 
 TEST(Numbering, KnowsWisdomTeeth) {
   const std::vector<int> lower{38, 37, 36, 35, 34, 33, 32, 31, 41, 42, 43, 44, 45, 46, 47, 48};
-  EXPECT_EQ(numbers_of(number_teeth(teeth(lower, 0.8), Jaw::lower, shipped())), lower);
+  EXPECT_EQ(numbers_of(number_teeth(teeth(lower, 0.8), Jaw::lower, mean_arch())), lower);
 }
 
 TEST(Numbering, GivesNoNumberTwice) {
   std::vector<ToothInstance> read = teeth({17, 16, 15, 14, 13, 12, 11, 21, 22, 23, 24, 25, 26, 27});
   // The network takes the first premolar for the second one too.
   read[3].places = read[2].places;
-  const std::vector<int> numbers = numbers_of(number_teeth(read, Jaw::upper, shipped()));
+  const std::vector<int> numbers = numbers_of(number_teeth(read, Jaw::upper, mean_arch()));
   EXPECT_EQ(numbers[2], 15);
   EXPECT_EQ(numbers[3], 14);
 }
@@ -94,7 +94,7 @@ TEST(Numbering, GivesUpWhatIsNoTooth) {
   scrap.middle.x() += 1.5;
   scrap.support = 8;
   read.push_back(scrap);
-  const ArchNumbers numbers = number_teeth(read, Jaw::upper, shipped());
+  const ArchNumbers numbers = number_teeth(read, Jaw::upper, mean_arch());
   EXPECT_FALSE(numbers.teeth.back().fdi);
   EXPECT_EQ(numbers.teeth[2].fdi, 14);
 }
@@ -103,28 +103,28 @@ TEST(Numbering, TakesAPersonsWord) {
   const std::vector<ToothInstance> read = teeth({16, 15, 13, 12, 11, 21, 22, 23}, 0.5);
   NumberingOptions options;
   options.given[1] = 14;
-  EXPECT_EQ(number_teeth(read, Jaw::upper, shipped(), options).teeth[1].fdi, 14);
+  EXPECT_EQ(number_teeth(read, Jaw::upper, mean_arch(), options).teeth[1].fdi, 14);
   options.given.clear();
   options.missing_teeth = {15};
-  EXPECT_NE(number_teeth(read, Jaw::upper, shipped(), options).teeth[1].fdi, 15);
+  EXPECT_NE(number_teeth(read, Jaw::upper, mean_arch(), options).teeth[1].fdi, 15);
   options.given[1] = 15;
-  EXPECT_THROW(number_teeth(read, Jaw::upper, shipped(), options), UsageError);
+  EXPECT_THROW(number_teeth(read, Jaw::upper, mean_arch(), options), UsageError);
   options = {};
   options.given = {{0, 36}};
-  EXPECT_THROW(number_teeth(read, Jaw::upper, shipped(), options), UsageError);
+  EXPECT_THROW(number_teeth(read, Jaw::upper, mean_arch(), options), UsageError);
   options.given = {{0, 11}, {4, 16}};  // against their order
-  EXPECT_THROW(number_teeth(read, Jaw::upper, shipped(), options), UsageError);
+  EXPECT_THROW(number_teeth(read, Jaw::upper, mean_arch(), options), UsageError);
 }
 
 TEST(Numbering, TheRightJawHasMoreEvidence) {
   // The network tells places from the middle, not jaws: distances alone speak.
   const std::vector<ToothInstance> upper = teeth({17, 16, 15, 14, 13, 12, 11, 21, 22, 23, 24, 25, 26, 27}, 0.5);
-  EXPECT_GT(number_teeth(upper, Jaw::upper, shipped()).evidence, number_teeth(upper, Jaw::lower, shipped()).evidence);
+  EXPECT_GT(number_teeth(upper, Jaw::upper, mean_arch()).evidence, number_teeth(upper, Jaw::lower, mean_arch()).evidence);
   const std::vector<ToothInstance> lower = teeth({37, 36, 35, 34, 33, 32, 31, 41, 42, 43, 44, 45, 46, 47}, 0.5);
-  EXPECT_LT(number_teeth(lower, Jaw::upper, shipped()).evidence, number_teeth(lower, Jaw::lower, shipped()).evidence);
+  EXPECT_LT(number_teeth(lower, Jaw::upper, mean_arch()).evidence, number_teeth(lower, Jaw::lower, mean_arch()).evidence);
 }
 
-TEST(Numbering, NothingGivesNothing) { EXPECT_TRUE(number_teeth({}, Jaw::upper, shipped()).teeth.empty()); }
+TEST(Numbering, NothingGivesNothing) { EXPECT_TRUE(number_teeth({}, Jaw::upper, mean_arch()).teeth.empty()); }
 
 }  // namespace
 }  // namespace rhizodont

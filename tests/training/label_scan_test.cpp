@@ -20,7 +20,7 @@ namespace {
 constexpr std::uint64_t first_seed = 5000;
 const std::filesystem::path data = std::filesystem::path(RHIZODONT_SOURCE_DIR).parent_path() / "shared" / "data";
 
-const ArchModel& shipped() {
+const ArchModel& mean_arch() {
   static const ArchModel model =
       load_arch_model(std::filesystem::path(RHIZODONT_SOURCE_DIR) / "models" / "arch.safetensors");
   return model;
@@ -72,7 +72,7 @@ TEST(LabelScan, ReadsGeneratedArchesWhereTheNetworkIsGood) {
   std::vector<SegmentationFigures> all;
   for (std::uint64_t seed = first_seed; seed < first_seed + 6; ++seed) {
     const GeneratedArch arch = sample_arch(family, seed);
-    const SegmentedScan found = label_scan(arch.scan, good_reading(arch, seed), shipped(), {});
+    const SegmentedScan found = label_scan(arch.scan, good_reading(arch, seed), mean_arch(), {});
     all.push_back(segmentation_figures(arch.scan, arch.fdi, found.fdi));
     std::string errors;
     for (const FoundToothFigures& tooth : all.back().teeth)
