@@ -119,9 +119,11 @@ TEST(Numbering, TakesAPersonsWord) {
 TEST(Numbering, TheRightJawHasMoreEvidence) {
   // The network tells places from the middle, not jaws: distances alone speak.
   const std::vector<ToothInstance> upper = teeth({17, 16, 15, 14, 13, 12, 11, 21, 22, 23, 24, 25, 26, 27}, 0.5);
-  EXPECT_GT(number_teeth(upper, Jaw::upper, mean_arch()).evidence, number_teeth(upper, Jaw::lower, mean_arch()).evidence);
+  EXPECT_GT(number_teeth(upper, Jaw::upper, mean_arch()).evidence,
+            number_teeth(upper, Jaw::lower, mean_arch()).evidence);
   const std::vector<ToothInstance> lower = teeth({37, 36, 35, 34, 33, 32, 31, 41, 42, 43, 44, 45, 46, 47}, 0.5);
-  EXPECT_LT(number_teeth(lower, Jaw::upper, mean_arch()).evidence, number_teeth(lower, Jaw::lower, mean_arch()).evidence);
+  EXPECT_LT(number_teeth(lower, Jaw::upper, mean_arch()).evidence,
+            number_teeth(lower, Jaw::lower, mean_arch()).evidence);
 }
 
 TEST(Numbering, NothingGivesNothing) { EXPECT_TRUE(number_teeth({}, Jaw::upper, mean_arch()).teeth.empty()); }
