@@ -25,6 +25,15 @@ Eigen::Matrix3d upright(const ScanReading& said) {
   return turn;
 }
 
+/// The rotation in steps of some degrees: what hangs on which points were chosen does not then choose other points.
+Eigen::Matrix3d in_steps(const Eigen::Matrix3d& rotation) {
+  constexpr double step = 0.06;  // rad; the network was trained with more
+  const Eigen::AngleAxisd turn(rotation);
+  const Eigen::Vector3d steps = (turn.angle() / step * turn.axis()).array().round();
+  if (steps.isZero()) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(step * steps.norm(), steps.normalized()).toRotationMatrix();
+}
+
 Eigen::Vector3d mean_of(const ScanCloud& cloud) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < cloud.size(); ++i) sum += vector_at(cloud.positions, i);
@@ -55,7 +64,8 @@ TeethReading read_teeth(const TriangleMesh& scan, const ScanNetwork& network, in
     cloud = turned(cloud, turn);
     reading.pyramid = scan_pyramid(cloud, network.shape());
     reading.said = network.read(reading.pyramid);
-    turn = upright(reading.said);
+    turn = in_steps(upright(reading.said));
+    if (turn.isIdentity()) break;
   }
   return reading;
 }
