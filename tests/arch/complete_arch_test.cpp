@@ -108,12 +108,12 @@ LabelledScan reversed(const LabelledScan& scan) {
   return result;
 }
 
-using Corners = std::array<std::array<double, 3>, 3>;
+using CornerPlaces = std::array<std::array<double, 3>, 3>;
 
-std::multiset<Corners> triangles_of(const TriangleMesh& mesh) {
-  std::multiset<Corners> triangles;
+std::multiset<CornerPlaces> triangles_of(const TriangleMesh& mesh) {
+  std::multiset<CornerPlaces> triangles;
   for (const Triangle& t : mesh.triangles) {
-    Corners corners;
+    CornerPlaces corners;
     for (std::size_t i = 0; i < 3; ++i) {
       const Point& p = mesh.vertices[static_cast<std::size_t>(t[i])];
       corners[i] = {p.x(), p.y(), p.z()};
