@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "rhizodont/export.hpp"
 #include "rhizodont/jaw.hpp"
 #include "rhizodont/mesh.hpp"
 
@@ -17,7 +18,7 @@
 namespace rhizodont {
 
 /// What teeth are found by: a network and the mean arch, loaded once and used for many scans, from several threads.
-class SegmentModels {
+class RHIZODONT_EXPORT SegmentModels {
  public:
   /// Reads segment.safetensors and arch.safetensors from a folder. Throws InputError if one is missing or damaged.
   static SegmentModels load(const std::filesystem::path& folder);
@@ -34,7 +35,7 @@ class SegmentModels {
 };
 
 /// The files that `SegmentModels::load` reads from a folder.
-std::vector<std::filesystem::path> segment_model_files(const std::filesystem::path& folder);
+RHIZODONT_EXPORT std::vector<std::filesystem::path> segment_model_files(const std::filesystem::path& folder);
 
 struct SegmentOptions {
   double millimetres_per_unit = 1;  ///< of the scan, > 0
@@ -66,6 +67,7 @@ struct SegmentedScan {
 /// Finds the permanent teeth of one jaw in a scan of gum and teeth, in any pose, and numbers them. The same labels
 /// for any number of threads. Throws UsageError for an option out of range or numbers that contradict each other;
 /// InputError, with the reason, for what is no scan of an arch.
-SegmentedScan segment_scan(const TriangleMesh& scan, const SegmentModels& models, const SegmentOptions& options = {});
+RHIZODONT_EXPORT SegmentedScan segment_scan(const TriangleMesh& scan, const SegmentModels& models,
+                                            const SegmentOptions& options = {});
 
 }  // namespace rhizodont

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "base/with_threads.hpp"
 #include "completion/complete_points.hpp"
 #include "guiding/fitted_surface.hpp"
 #include "pipeline/models.hpp"
@@ -10,8 +11,6 @@
 #include "rhizodont/error.hpp"
 #include "skirt/skirt.hpp"
 #include "teeth/prepared_crown.hpp"
-
-#include <tbb/task_arena.h>
 
 #include <memory>
 #include <optional>
@@ -61,15 +60,6 @@ auto hinting(const Work& work, const Hint& hint) {
   } catch (const NoResultError& error) {
     throw NoResultError(error.what() + hint(), error.elements(), error.kind());
   }
-}
-
-/// Runs `work` in an arena of at most `threads` threads (0: the caller's own), so that calls side by side keep each
-/// their own limit.
-template <class Work>
-auto with_threads(int threads, const Work& work) {
-  if (threads == 0 || threads >= tbb::this_task_arena::max_concurrency()) return work();
-  tbb::task_arena arena(threads);
-  return arena.execute(work);
 }
 
 }  // namespace rhizodont

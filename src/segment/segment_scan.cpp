@@ -3,6 +3,7 @@
 #include "rhizodont/segment.hpp"
 
 #include "base/option_range.hpp"
+#include "base/with_threads.hpp"
 #include "mesh/geometry.hpp"
 #include "networks/scan_network.hpp"
 #include "rhizodont/error.hpp"
@@ -12,7 +13,6 @@
 #include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 
@@ -87,13 +87,11 @@ SegmentModels SegmentModels::load(const std::filesystem::path& folder) {
 
 SegmentedScan segment_scan(const TriangleMesh& scan, const SegmentModels& models, const SegmentOptions& options) {
   require_in_range(options);
-  std::optional<tbb::global_control> limit;
-  if (options.threads > 0)
-    limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   const TriangleMesh mesh = usable(scan, options.millimetres_per_unit);
   require_size(mesh);
   const SegmentModels::Content& content = models.content();
-  return label_scan(mesh, read_teeth(mesh, content.network), content.arch, options);
+  return with_threads(options.threads,
+                      [&] { return label_scan(mesh, read_teeth(mesh, content.network), content.arch, options); });
 }
 
 }  // namespace rhizodont
