@@ -6,8 +6,9 @@
 // in five random poses, and says which share of vertices keeps its label at least; `held-out` generates scans that no
 // network was trained on and prints the figures of rhizodont evaluate --labels.
 #include "base/float_bits.hpp"
+#include "base/peak_memory.hpp"
 #include "base/random_stream.hpp"
-#include "common/stopwatch.hpp"
+#include "common/timing.hpp"
 #include "evaluation/segmentation_figures.hpp"
 #include "families/arch_family.hpp"
 #include "mesh/adjacency.hpp"

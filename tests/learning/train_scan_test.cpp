@@ -17,7 +17,7 @@
 namespace rhizodont {
 namespace {
 
-ScanShape small_shape() {
+ScanShape small_scan_shape() {
   ScanShape shape;
   shape.widths = {16, 16, 24, 32};
   shape.blocks = {1, 1, 1, 1};
@@ -57,7 +57,7 @@ class ScanTraining : public ::testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
   ScanTrainingOptions options(const std::string& run) const {
     ScanTrainingOptions o;
-    o.shape = small_shape();
+    o.shape = small_scan_shape();
     o.pool = 3;
     o.loop.batch = 2;
     o.loop.threads = 1;
@@ -114,7 +114,7 @@ TEST_F(ScanTraining, AMirroredScanHasMirroredKinds) {
                       .noise_mm = 0};
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
     RandomStream random(seed);
-    const ShownScan shown = varied(half_circle(2), small_shape(), still, random);
+    const ShownScan shown = varied(half_circle(2), small_scan_shape(), still, random);
     for (std::size_t i = 0; i < shown.kinds.size(); ++i) {
       const float x = shown.pyramid.levels[0].positions[3 * i];
       if (shown.kinds[i] != 0 && std::abs(x) > 1) {
