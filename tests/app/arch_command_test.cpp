@@ -123,7 +123,7 @@ TEST_F(Arch, WrongUseAndBadInputAreSaidInOneLine) {
   expect_error("arch crowns -o out --root-length 36", 2, "36=14.2");
   expect_error("arch crowns -o out --root-length 47=14", 2, "47");
   expect_error("arch crowns -o out --labels-are roman", 2, "roman");
-  expect_error("arch crowns/LL6.ply -o out", 3, "too small for a jaw");
+  expect_error("arch crowns/LL6.ply -o out", 3, "A single crown goes to complete");
   expect_error("arch missing.ply -o out", 3, "missing.ply");
   expect_error("arch crowns/LL6.ply --labels none.json -o out", 3, "none.json");
   folder.write("list.json", "[1, 2, 3]");

@@ -51,7 +51,7 @@ TEST_F(CommandLine, WhatWasMeantIsSuggested) {
   expect_error("rendre tooth.ply", 2, "did you mean render?");
   expect_error("label_skirt", 2, "did you mean label-skirt?");
   expect_error("crown_34.ply -o tooth.ply", 2, "did you mean complete crown_34.ply?");
-  expect_error("xyzzy", 2, "there are complete, arch, evaluate, check");
+  expect_error("xyzzy", 2, "there are complete, arch, batch, segment, evaluate, check");
   expect_error(complete("crown_34.ply --rapair -o tooth.ply"), 2, "no option --rapair: did you mean --repair?");
   expect_error(complete("crown_34.ply --root-lenght=12 -o tooth.ply"), 2, "did you mean --root-length?");
   expect_error(complete("crown_34.ply --xyzzy -o tooth.ply"), 2, "--xyzzy");
