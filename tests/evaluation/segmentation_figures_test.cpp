@@ -43,9 +43,10 @@ TEST(SegmentationFigures, CountedByHand) {
   EXPECT_DOUBLE_EQ(f.teeth[1].most_overlap, 3.0 / 4);
   EXPECT_FALSE(f.teeth[1].is_right());
   EXPECT_TRUE(f.extra.empty());
-  EXPECT_DOUBLE_EQ(f.tir, 0.5);
-  // 11: middles (1, 1/3) and (0.5, 0.5), size of its box (2 + 1 + 0) / 3 = 1; 22: (6, 2/3) and (5.5, 0.5).
-  EXPECT_NEAR(f.tla, std::exp(-std::hypot(0.5, 1.0 / 6)), 1e-12);
+  // 11: middles (1, 1/3) and (0.5, 0.5), 0.53 apart, over half of its box's size, (2 + 1 + 0) / 3; 22: the same. So
+  // neither counts as found, which costs 5 each.
+  EXPECT_EQ(f.tir, 0);
+  EXPECT_NEAR(f.tla, std::exp(-5), 1e-12);
   // None of the six triangles: each has vertex 2, 4 or one of those called 22 instead of 21.
   EXPECT_DOUBLE_EQ(f.faces_right, 0);
   const SegmentationSummary sum = summary_of({f, segmentation_figures(strip(), truth, truth)});
