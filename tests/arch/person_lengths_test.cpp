@@ -68,8 +68,8 @@ TEST(PersonLengths, LowersTheErrorOfPeopleDrawnFromTheModel) {
   }
   const double lowered = 1 - after / before;
   RecordProperty("error_lowered_by_percent", static_cast<int>(100 * lowered));
-  EXPECT_GT(lowered, 0.08);
-  EXPECT_LT(lowered, 0.2);
+  EXPECT_GT(lowered, 0.03);
+  EXPECT_LT(lowered, 0.1);
 }
 
 TEST(PersonLengths, RefusesWhatCannotBe) {
