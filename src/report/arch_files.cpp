@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/arch_files.hpp"
 
+#include "io/scan_labels.hpp"
 #include "io/scene.hpp"
 #include "io/write_labels.hpp"
 #include "mesh/append_mesh.hpp"
@@ -16,7 +17,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <set>
@@ -222,25 +222,14 @@ std::string picture_of(const MeshFile& all, const Eigen::Matrix3d& upright) {
       options));
 }
 
-/// The number of all corners, else gum.
-std::vector<int> per_triangle(const TriangleMesh& mesh, const std::vector<int>& per_vertex) {
-  std::vector<int> labels;
-  for (const Triangle& t : mesh.triangles) {
-    const int first = per_vertex[static_cast<std::size_t>(t[0])];
-    const bool alike =
-        std::all_of(t.begin(), t.end(), [&](int v) { return per_vertex[static_cast<std::size_t>(v)] == first; });
-    labels.push_back(alike ? first : 0);
-  }
-  return labels;
-}
-
 void add_labels(const ScanInput& input, const ArchFileOptions& how, const std::filesystem::path& folder,
                 std::vector<OutputFile>& files) {
   if (input.is_folder) return;
   const std::vector<int>& fdi = input.scan.fdi;
   files.push_back({folder / "labels.json", teeth3ds_json(fdi, only_jaw(fdi), input.file)});
   if (how.labels_vtp)
-    files.push_back({folder / "labels.vtp", vtp_with_cell_labels(input.scan.mesh, per_triangle(input.scan.mesh, fdi))});
+    files.push_back({folder / "labels.vtp",
+                     vtp_with_cell_labels(input.scan.mesh, triangle_labels_from_vertices(input.scan.mesh, fdi))});
   if (how.labels_vtk)
     files.push_back(
         {folder / "labels.vtk", vtk_with_point_labels(input.scan.mesh, numbered_as(fdi, LabelNumbers::universal))});
