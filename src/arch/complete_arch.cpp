@@ -3,6 +3,7 @@
 
 // "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", figure 1 and section 4.1: from a
 // segmented scan to whole teeth. What a person's lengths say of each other: person_lengths.cpp.
+#include "arch/arch_options.hpp"
 #include "arch/clearance.hpp"
 #include "arch/neck.hpp"
 #include "arch/person_lengths.hpp"
@@ -36,20 +37,6 @@ namespace {
 constexpr double half_of_80_percent = 1.2816;
 
 bool is_upper(int fdi) { return jaw_of_fdi(fdi) == Jaw::upper; }
-
-void require_in_range(const ArchOptions& options) {
-  require_options_in_range(options.tooth);
-  if (options.tooth.fdi || options.tooth.directions || options.tooth.steering.length_mm)
-    throw UsageError(
-        "Numbers, directions and root lengths are each tooth's own: they cannot be set for the whole arch.");
-  if (!(options.clearance_mm >= 0 && options.clearance_mm <= 3))
-    throw UsageError(
-        fmt::format("A clearance of {} mm between roots is out of its range, 0 to 3 mm.", options.clearance_mm));
-  for (const auto& [fdi, mm] : options.root_lengths)
-    if (!(mm >= shortest_root_mm && mm <= longest_root_mm))
-      throw UsageError(fmt::format("A root length of {} mm for tooth {} is out of its range, {} to {} mm.", mm, fdi,
-                                   shortest_root_mm, longest_root_mm));
-}
 
 void require_numbers_of_teeth(const std::vector<int>& fdi) {
   for (std::size_t v = 0; v < fdi.size(); ++v)
@@ -98,7 +85,8 @@ std::map<int, ToothDirections> directions_of(const std::vector<ToothOfArch>& tee
     for (const ToothOfArch& tooth : teeth) {
       if (!is_permanent_tooth(tooth.fdi) || is_upper(tooth.fdi) != upper) continue;
       // In an order of its own, so that sums do not round otherwise where the scan has another one.
-      CrownPlace place = place_of_crown(reordered(tooth.crown, space_order(tooth.crown, 1e-3 / millimetres_per_unit)));
+      CrownPlace place =
+          place_of_crown(reordered(tooth.crown, space_order(tooth.crown, space_order_step_mm / millimetres_per_unit)));
       place.middle *= millimetres_per_unit;
       places.emplace(tooth.fdi, place);
     }
@@ -387,6 +375,20 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
 
 }  // namespace
 
+void require_options_in_range(const ArchOptions& options) {
+  require_options_in_range(options.tooth);
+  if (options.tooth.fdi || options.tooth.directions || options.tooth.steering.length_mm)
+    throw UsageError(
+        "Numbers, directions and root lengths are each tooth's own: they cannot be set for the whole arch.");
+  if (!(options.clearance_mm >= 0 && options.clearance_mm <= 3))
+    throw UsageError(
+        fmt::format("A clearance of {} mm between roots is out of its range, 0 to 3 mm.", options.clearance_mm));
+  for (const auto& [fdi, mm] : options.root_lengths)
+    if (!(mm >= shortest_root_mm && mm <= longest_root_mm))
+      throw UsageError(fmt::format("A root length of {} mm for tooth {} is out of its range, {} to {} mm.", mm, fdi,
+                                   shortest_root_mm, longest_root_mm));
+}
+
 int CompletedArch::rooted() const {
   return static_cast<int>(
       std::count_if(teeth.begin(), teeth.end(), [](const ToothOfArch& t) { return t.tooth.has_value(); }));
@@ -413,7 +415,7 @@ CompleteOptions ArchOptions::skirt_and_repair() {
 
 CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& models, const ArchOptions& options,
                             const ArchProgress& progress) {
-  require_in_range(options);
+  require_options_in_range(options);
   const CompletionModels::Content& content = *content_of(models);
   if (options.tooth.skirt && !content.skirt)
     throw UsageError("The models' folder has no weights to find a skirt with (skirt.safetensors).");

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/run_batch.hpp"
 
-#include "base/option_range.hpp"
+#include "arch/arch_options.hpp"
 #include "batch/case_folders.hpp"
 #include "batch/complete_case.hpp"
 #include "batch/ledger.hpp"
@@ -227,9 +227,8 @@ class ShardRun {
 
 /// Wrong options are to be told at once, not by each case.
 void require_in_range(const BatchOptions& options) {
-  require_options_in_range(options.cases.arch.tooth);
+  require_options_in_range(options.cases.arch);
   require_options_in_range(options.cases.crown);
-  require_ranges("arches", {{"clearance", options.cases.arch.clearance_mm, OptionRange::at_least(0).at_most(3)}});
 }
 
 }  // namespace

@@ -13,6 +13,9 @@ struct MeshOrder {
   std::vector<int> vertices, triangles;
 };
 
+/// mm: finer than the distances between a scan's vertices.
+inline constexpr double space_order_step_mm = 1e-3;
+
 /// Numbers of points along a curve that fills space, whatever order they are in: points next to each other on it lie
 /// beside each other, so that where rounding swaps two they are neighbours. Points at one place keep their order;
 /// non-finite ones come last. @param step  > 0, in the points' unit: side of the finest cells, 2^20 of which fit on

@@ -131,7 +131,6 @@ std::vector<int> in_order_of_input(const std::vector<int>& kept) {
 /// A tooth with the kept crown's vertices and triangles as the input has them one after the other, and triangles
 /// beginning with the same corner. @param tooth  the crown's first, as they come at the workplace
 TriangleMesh with_crown_in_order(const TriangleMesh& tooth, const PreparedTooth::Content& prepared) {
-  if (!prepared.place.reordered) return tooth;
   TriangleMesh result = tooth;
   const std::vector<int> vertices = in_order_of_input(prepared.old_vertices);
   std::vector<std::int32_t> place(tooth.vertices.size());
@@ -187,7 +186,7 @@ void finish(const PreparedTooth::Content& prepared, StageClock& clock, Completed
   tooth.source.assign(fused.tooth.mesh.vertices.size(), VertexSource::predicted);
   std::fill_n(tooth.source.begin(), kept.size(), VertexSource::scan);
   for (const int v : fused.transition.vertices) tooth.source[static_cast<std::size_t>(v)] = VertexSource::transition;
-  fused.tooth.mesh = with_crown_in_order(fused.tooth.mesh, prepared);
+  if (prepared.place.reordered) fused.tooth.mesh = with_crown_in_order(fused.tooth.mesh, prepared);
   put_in_place(fused.tooth.mesh, prepared.input, kept, prepared.place, tooth);
   record.missed_places =
       where_promise_three_is_missed(tooth.mesh, kept, crown.mesh.triangles.size(), record.promises.new_triangles);

@@ -8,15 +8,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <utility>
 
 namespace rhizodont {
 namespace {
-
-/// mm: finest cells of the order of elements.
-constexpr double order_step = 1e-3;
 
 /// A triangle that names no vertices is refused later, by its number.
 bool has_its_vertices(const TriangleMesh& mesh) {
@@ -33,14 +31,24 @@ MeshOrder same_order(const TriangleMesh& mesh) {
   return order;
 }
 
-/// Finite coordinates of one axis, ascending.
+/// Finite coordinates of one axis.
 std::vector<double> coordinates_along(const TriangleMesh& mesh, Eigen::Index axis) {
   std::vector<double> along;
   along.reserve(mesh.vertices.size());
   for (const Point& p : mesh.vertices)
     if (std::isfinite(p[axis])) along.push_back(p[axis]);
-  std::sort(along.begin(), along.end());
   return along;
+}
+
+/// Summed from the smallest coordinate to the largest: the vertices' order has no say in how it is rounded.
+Point mean_vertex(const TriangleMesh& mesh) {
+  Point mean;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    std::vector<double> along = coordinates_along(mesh, k);
+    std::sort(along.begin(), along.end());
+    mean[k] = std::accumulate(along.begin(), along.end(), 0.0) / static_cast<double>(along.size());
+  }
+  return mean;
 }
 
 Eigen::Matrix3d to_directions(const ToothDirections& directions) {
@@ -84,19 +92,20 @@ Workplace workplace(const TriangleMesh& input, double millimetres_per_unit,
   place.millimetres_per_unit = millimetres_per_unit;
   place.as_float = coordinates_fit_float(input);
   place.order = same_order(input);
-  Point median, mean;  // the median: a stray vertex somewhere has no say
+  Point median;  // a stray vertex somewhere has no say
   for (Eigen::Index k = 0; k < 3; ++k) {
-    const std::vector<double> along = coordinates_along(input, k);
+    std::vector<double> along = coordinates_along(input, k);
     if (along.empty()) return place;
-    median[k] = along[along.size() / 2];
-    mean[k] = std::accumulate(along.begin(), along.end(), 0.0) / static_cast<double>(along.size());
+    const auto half = along.begin() + static_cast<std::ptrdiff_t>(along.size() / 2);
+    std::nth_element(along.begin(), half, along.end());
+    median[k] = *half;
   }
   place.is_far = median.norm() * millimetres_per_unit > far_mm;
   if (directions && has_its_vertices(input)) {
     place.rotation = to_directions(*directions);
-    place.origin = mean;
+    place.origin = mean_vertex(input);
     place.reordered = true;
-    place.order = space_order(moved(input, place), order_step / millimetres_per_unit);
+    place.order = space_order(moved(input, place), space_order_step_mm / millimetres_per_unit);
   } else if (place.is_far) {
     const double step = std::exp2(std::round(std::log2(step_mm / millimetres_per_unit)));
     place.origin = (median / step).array().round().matrix() * step;
