@@ -7,6 +7,7 @@
 #include "segment/tooth_borders.hpp"
 #include "segment/tooth_instances.hpp"
 #include "teeth/clean_labels.hpp"
+#include "teeth/label_numbers.hpp"
 
 #include <fmt/format.h>
 
@@ -68,7 +69,7 @@ JawDecision decide_jaw(const TeethReading& reading, const ToothInstances& found,
   if (!numbering.given.empty()) {
     const int fdi = numbering.given.begin()->second;
     SegmentOptions stated = options;
-    stated.jaw = fdi < 30 ? Jaw::upper : Jaw::lower;
+    stated.jaw = jaw_of_fdi(fdi);
     decision = decide_jaw(reading, found, arch, stated, numbering);
     decision.reason = fmt::format("The {} jaw, for tooth {} was said to be there.", jaw_name(decision.jaw), fdi);
     return decision;

@@ -6,6 +6,8 @@
 #include "segment/numbering.hpp"
 
 #include "rhizodont/error.hpp"
+#include "teeth/fdi.hpp"
+#include "teeth/label_numbers.hpp"
 
 #include <fmt/format.h>
 
@@ -169,7 +171,7 @@ double ending(const Costs& costs, int i, int s) {
 void require_numbers_of(Jaw jaw, const NumberingOptions& options) {
   std::set<int> seen;
   for (const auto& [tooth, fdi] : options.given) {
-    if ((fdi / 10 <= 2) != (jaw == Jaw::upper) || fdi / 10 > 4)
+    if (!is_permanent_tooth(fdi) || jaw_of_fdi(fdi) != jaw)
       throw UsageError(fmt::format("Tooth {} is no permanent tooth of the {} jaw.", fdi, jaw_name(jaw)));
     if (!seen.insert(fdi).second) throw UsageError(fmt::format("Tooth {} was given to two teeth.", fdi));
     if (options.missing_teeth.contains(fdi))
@@ -180,10 +182,8 @@ void require_numbers_of(Jaw jaw, const NumberingOptions& options) {
 }  // namespace
 
 int fdi_of_place(int place, Jaw jaw) {
-  const bool left_of_frame = place < 8;
-  const int number = left_of_frame ? 8 - place : place - 7;
-  if (jaw == Jaw::upper) return (left_of_frame ? 10 : 20) + number;
-  return (left_of_frame ? 30 : 40) + number;
+  // From above a lower jaw has the patient's left where an upper one, from below, has the right.
+  return fdi_of_arch_place(jaw == Jaw::upper ? place + 1 : place_count - place, place_count, jaw);
 }
 
 int place_of_fdi(int fdi) {

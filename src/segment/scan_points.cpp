@@ -149,12 +149,25 @@ ScanPoints scan_points(const TriangleMesh& scan, const ScanFrame& frame) {
   return points;
 }
 
+Eigen::Matrix3d rotation_to(const Eigen::Vector3d& up, const Eigen::Vector3d& front) {
+  Eigen::Vector3d y = front - up.dot(front) * up;
+  if (!(y.norm() > 1e-3)) y = up.unitOrthogonal();
+  y.normalize();
+  Eigen::Matrix3d rotation;
+  rotation << y.cross(up).transpose(), y.transpose(), up.transpose();
+  return rotation;
+}
+
+Eigen::Vector3d mean_place(const ScanCloud& cloud) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < cloud.size(); ++i) sum += vector_at(cloud.positions, i);
+  return sum / static_cast<double>(cloud.size());
+}
+
 ScanCloud turned(const ScanCloud& cloud, const Eigen::Matrix3d& rotation) {
   ScanCloud result = cloud;
   const Eigen::Matrix3f turn = rotation.cast<float>();
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < cloud.size(); ++i) mean += vector_at(cloud.positions, i);
-  const Eigen::Vector3f middle = (mean / static_cast<double>(cloud.size())).cast<float>();
+  const Eigen::Vector3f middle = mean_place(cloud).cast<float>();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const Eigen::Vector3f p = turn * (float_vector_at(cloud.positions, i) - middle),
                           n = turn * float_vector_at(cloud.normals, i);
@@ -176,19 +189,15 @@ ScanFrame first_frame(const TriangleMesh& scan) {
   frame.origin = area_centroid(scan);
   const Eigen::Vector3d z = up.normalized();
   double farthest = -1;
-  Eigen::Vector3d y = z.unitOrthogonal();
+  Eigen::Vector3d front = Eigen::Vector3d::Zero();
   for (const Point& p : scan.vertices) {
-    const Eigen::Vector3d d = p - frame.origin, level = d - z.dot(d) * z;
-    if (level.norm() > farthest) {
-      farthest = level.norm();
-      y = level;
+    const Eigen::Vector3d d = p - frame.origin;
+    if (const double level = (d - z.dot(d) * z).norm(); level > farthest) {
+      farthest = level;
+      front = d;
     }
   }
-  if (!(farthest > 0)) y = z.unitOrthogonal();
-  y.normalize();
-  frame.rotation.row(0) = y.cross(z);
-  frame.rotation.row(1) = y;
-  frame.rotation.row(2) = z;
+  frame.rotation = rotation_to(z, front);
   return frame;
 }
 

@@ -32,6 +32,13 @@ struct ScanPoints {
 /// and 2.2 mm: positive in hollows. Triangles without area count for nothing. Throws InputError where none has one.
 ScanPoints scan_points(const TriangleMesh& scan, const ScanFrame& frame);
 
+/// The proper rotation whose rows are the frame's axes: z is `up`, y the part of `front` at right angles to it; where
+/// that vanishes, any. `up` unit.
+Eigen::Matrix3d rotation_to(const Eigen::Vector3d& up, const Eigen::Vector3d& front);
+
+/// Mean of a cloud's places; it has points.
+Eigen::Vector3d mean_place(const ScanCloud& cloud);
+
 /// The same points in a frame that is turned against theirs; the origin goes to their mean.
 ScanCloud turned(const ScanCloud& cloud, const Eigen::Matrix3d& rotation);
 

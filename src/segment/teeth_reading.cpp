@@ -13,16 +13,7 @@ Eigen::Vector3d vector_of(const std::array<float, 3>& v) { return Eigen::Vector3
 Eigen::Matrix3d upright(const ScanReading& said) {
   Eigen::Vector3d z = vector_of(said.occlusal);
   if (!(z.norm() > 1e-3)) z = Eigen::Vector3d::UnitZ();
-  z.normalize();
-  Eigen::Vector3d y = vector_of(said.front);
-  y -= z.dot(y) * z;
-  if (!(y.norm() > 1e-3)) y = z.unitOrthogonal();
-  y.normalize();
-  Eigen::Matrix3d turn;
-  turn.row(0) = y.cross(z);
-  turn.row(1) = y;
-  turn.row(2) = z;
-  return turn;
+  return rotation_to(z.normalized(), vector_of(said.front));
 }
 
 /// The rotation in steps of some degrees: what hangs on which points were chosen does not then choose other points.
@@ -32,12 +23,6 @@ Eigen::Matrix3d in_steps(const Eigen::Matrix3d& rotation) {
   const Eigen::Vector3d steps = (turn.angle() / step * turn.axis()).array().round();
   if (steps.isZero()) return Eigen::Matrix3d::Identity();
   return Eigen::AngleAxisd(step * steps.norm(), steps.normalized()).toRotationMatrix();
-}
-
-Eigen::Vector3d mean_of(const ScanCloud& cloud) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < cloud.size(); ++i) sum += vector_at(cloud.positions, i);
-  return sum / static_cast<double>(cloud.size());
 }
 
 }  // namespace
@@ -59,7 +44,7 @@ TeethReading read_teeth(const TriangleMesh& scan, const ScanNetwork& network, in
   cloud = scan_points(scan, reading.frame).cloud;
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
   for (int pass = 0; pass <= turns; ++pass) {
-    reading.frame.origin += reading.frame.rotation.transpose() * mean_of(cloud);
+    reading.frame.origin += reading.frame.rotation.transpose() * mean_place(cloud);
     reading.frame.rotation = turn * reading.frame.rotation;
     cloud = turned(cloud, turn);
     reading.pyramid = scan_pyramid(cloud, network.shape());
