@@ -132,21 +132,14 @@ TrainingShare ScanTraining::share(std::uint64_t first, int count) {
     const ScanExample example =
         to_example(varied(*batch.at(sample), options.shape, options.variation, random), options.shape);
     const LossParts loss = loss_of(network->forward(example.scan), example);
-    const auto gradients = torch::autograd::grad({loss.total}, parameters, {}, c10::nullopt, false, true);
+    add_gradients(torch::autograd::grad({loss.total}, parameters, {}, c10::nullopt, false, true), share.gradients);
     share.loss += loss.total.item<double>() / count;
     for (const auto& [name, part] :
          {std::pair("kinds", &loss.kinds), std::pair("offsets", &loss.offsets), std::pair("borders", &loss.borders),
           std::pair("jaw", &loss.jaw), std::pair("directions", &loss.directions)})
       share.terms[name] += part->item<double>() / count;
-    if (sample == first) {
-      share.gradients = gradients;
-    } else {
-      for (std::size_t p = 0; p < gradients.size(); ++p)
-        if (gradients[p].defined()) share.gradients[p].add_(gradients[p]);
-    }
   }
-  for (torch::Tensor& gradient : share.gradients)
-    if (gradient.defined()) gradient.div_(count);
+  divide_gradients(share.gradients, count);
   return share;
 }
 
@@ -194,14 +187,8 @@ ScanTrainingResult train_scan(const CloudProvider& provider, const ScanTrainingO
   require_in_range(options);
   const TensorThreads one_thread(1);
   ScanTraining training(provider, options);
-  TrainingTask task;
+  TrainingTask task = task_of(training, options.pool);
   note_scan_shape(options.shape, task.identity);
-  task.notes["training.pool"] = std::to_string(options.pool);
-  task.weight_type = TensorType::float32;
-  task.lower_is_better = false;
-  task.prepare = [&](std::uint64_t first, int count) { training.prepare(first, count); };
-  task.share = [&](std::uint64_t first, int count) { return training.share(first, count); };
-  task.validate = [&] { return training.validate(); };
   const TrainingLoopResult result = run_training_loop(*training.network, task, options.loop);
   return {result.steps, result.samples, training.best};
 }

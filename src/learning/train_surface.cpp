@@ -163,14 +163,10 @@ TrainingShare SurfaceTraining::share(std::uint64_t first, int count) {
   for (std::uint64_t sample = first; sample < first + static_cast<std::uint64_t>(count); ++sample) {
     const SurfaceTensors surface = turned(batch[sample - first_of_batch], options, sample);
     const torch::Tensor loss = loss_of(network->forward(surface), surface);
-    const auto gradients = torch::autograd::grad({loss}, parameters);
+    add_gradients(torch::autograd::grad({loss}, parameters), share.gradients);
     share.loss += loss.item<double>();
-    if (sample == first)
-      share.gradients = gradients;
-    else
-      for (std::size_t p = 0; p < gradients.size(); ++p) share.gradients[p].add_(gradients[p]);
   }
-  for (torch::Tensor& gradient : share.gradients) gradient.div_(count);
+  divide_gradients(share.gradients, count);
   share.loss /= count;
   return share;
 }
@@ -199,15 +195,9 @@ SurfaceTrainingResult train_surface(const SurfaceProvider& provider, const Surfa
   require_in_range(options);
   const TensorThreads one_thread(1);
   SurfaceTraining training(provider, options);
-  TrainingTask task;
+  TrainingTask task = task_of(training, options.pool);
   note_surface_shape(options.shape, task.identity);
   note_surface_counts(options.shape, task.notes);
-  task.notes["training.pool"] = std::to_string(options.pool);
-  task.weight_type = TensorType::float32;
-  task.lower_is_better = false;
-  task.prepare = [&](std::uint64_t first, int count) { training.prepare(first, count); };
-  task.share = [&](std::uint64_t first, int count) { return training.share(first, count); };
-  task.validate = [&] { return training.validate(); };
   const TrainingLoopResult result = run_training_loop(*training.network, task, options.loop);
   SurfaceTrainingResult all{result.steps, result.samples, result.last_loss, training.best};
   // The best may be of an earlier run, whose checkpoint says no more of it.

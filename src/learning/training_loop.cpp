@@ -314,6 +314,22 @@ double learning_rate_at(const TrainingLoopOptions& o, std::uint64_t step) {
   return o.learning_rate * (o.lowest_rate + (1 - o.lowest_rate) * 0.5 * (1 + std::cos(std::numbers::pi * progress)));
 }
 
+void add_gradients(const std::vector<torch::Tensor>& of_sample, std::vector<torch::Tensor>& of_share) {
+  of_share.resize(of_sample.size());
+  for (std::size_t p = 0; p < of_sample.size(); ++p) {
+    if (!of_sample[p].defined()) continue;
+    if (of_share[p].defined())
+      of_share[p].add_(of_sample[p]);
+    else
+      of_share[p] = of_sample[p];
+  }
+}
+
+void divide_gradients(std::vector<torch::Tensor>& of_share, int count) {
+  for (torch::Tensor& gradient : of_share)
+    if (gradient.defined()) gradient.div_(count);
+}
+
 TrainingLoopResult run_training_loop(const torch::nn::Module& network, const TrainingTask& task,
                                      const TrainingLoopOptions& options) {
   require_in_range(options);

@@ -61,6 +61,26 @@ struct TrainingTask {
   std::function<void(const ProcessGroup& processes)> hand_round;
 };
 
+/// A task of one sample after the other from a pool, its best weights those with the highest figure, kept as floats;
+/// with the functions of `training` (prepare, share, validate), which must outlive it.
+template <class Training>
+TrainingTask task_of(Training& training, std::uint64_t pool) {
+  TrainingTask task;
+  task.notes["training.pool"] = std::to_string(pool);
+  task.weight_type = TensorType::float32;
+  task.lower_is_better = false;
+  task.prepare = [&](std::uint64_t first, int count) { training.prepare(first, count); };
+  task.share = [&](std::uint64_t first, int count) { return training.share(first, count); };
+  task.validate = [&] { return training.validate(); };
+  return task;
+}
+
+/// Adds a sample's gradients to those of a share; the share's are empty before the first. Undefined ones are zero.
+void add_gradients(const std::vector<torch::Tensor>& of_sample, std::vector<torch::Tensor>& of_share);
+
+/// Makes means of sums over `count` samples.
+void divide_gradients(std::vector<torch::Tensor>& of_share, int count);
+
 /// What a training run came to.
 struct TrainingLoopResult {
   std::uint64_t steps = 0;    ///< optimiser steps since the very start
