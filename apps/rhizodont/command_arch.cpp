@@ -12,6 +12,7 @@
 #include "rhizodont/segment.hpp"
 #include "teeth/fdi.hpp"
 #include "teeth/label_numbers.hpp"
+#include "unit_option.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -171,13 +172,8 @@ void add_arch_command(CLI::App& app) {
   arch->add_option("--output-format", command->files.tooth_format, "Format of the teeth")
       ->check(CLI::IsMember({"ply", "stl", "obj", "glb"}))
       ->capture_default_str();
-  arch->add_option_function<std::string>(
-          "--unit",
-          [command](const std::string& name) {
-            command->options.tooth.millimetres_per_unit = millimetres_per_unit(name);
-          },
-          "Unit of the scan's file: mm, cm, m, um, in, also in full and in capitals")
-      ->default_str("mm");
+  add_unit_option(*arch, command->options.tooth.millimetres_per_unit,
+                  "Unit of the scan's file: mm, cm, m, um, in, also in full and in capitals");
   arch->add_flag("--name-in-report", command->name_in_report,
                  "The report names the scan's file; else it holds its hash alone, for names tell of patients");
   arch->add_flag("--overwrite", command->overwrite, "Replace files that are in the folder already");

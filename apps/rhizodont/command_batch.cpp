@@ -10,6 +10,7 @@
 #include "rhizodont/io.hpp"
 #include "rhizodont/output_files.hpp"
 #include "skirt_option.hpp"
+#include "unit_option.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -175,14 +176,8 @@ void add_completion_options(CLI::App& batch, const std::shared_ptr<BatchCommand>
   batch.add_option("--output-format", cases.tooth_format, "Format of the teeth")
       ->check(CLI::IsMember({"ply", "stl", "obj", "glb"}))
       ->capture_default_str();
-  batch
-      .add_option_function<std::string>(
-          "--unit",
-          [command](const std::string& name) {
-            command->options.cases.arch.tooth.millimetres_per_unit = millimetres_per_unit(name);
-          },
-          "Unit of files for which the manifest says none: mm, cm, m, um, in")
-      ->default_str("mm");
+  add_unit_option(batch, cases.arch.tooth.millimetres_per_unit,
+                  "Unit of files for which the manifest says none: mm, cm, m, um, in");
   batch.add_flag("--resolve-collisions", cases.arch.resolve_collisions,
                  "Of arches: turn, bend or shorten roots that come too near to other teeth, by the least change");
   batch.add_option("--clearance", cases.arch.clearance_mm, "What they are to keep, mm, 0 to 3")->capture_default_str();

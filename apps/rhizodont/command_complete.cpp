@@ -11,6 +11,7 @@
 #include "rhizodont/report.hpp"
 #include "rhizodont/tooth_file.hpp"
 #include "skirt_option.hpp"
+#include "unit_option.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -296,12 +297,8 @@ void add_complete_command(CLI::App& app) {
       ->capture_default_str();
   complete->add_flag("--repair", command->options.repair,
                      "Mend a defective crown first: merges, drops and turns, each listed in the report");
-  complete
-      ->add_option_function<std::string>(
-          "--unit",
-          [command](const std::string& name) { command->options.millimetres_per_unit = millimetres_per_unit(name); },
-          "Unit of the crown's file: mm, cm, m, um, in, also in full and in capitals")
-      ->default_str("mm");
+  add_unit_option(*complete, command->options.millimetres_per_unit,
+                  "Unit of the crown's file: mm, cm, m, um, in, also in full and in capitals");
   complete->add_option("--transition", command->options.transition,
                        "Width in mm of the smoothed band beside the crown, 0 to 5; chosen if not given");
   add_root_options(*complete, command->options.steering);

@@ -9,9 +9,9 @@
 #include "rhizodont/models.hpp"
 #include "rhizodont/output_files.hpp"
 #include "rhizodont/segment.hpp"
-#include "rhizodont/units.hpp"
 #include "segment_options.hpp"
 #include "teeth/label_numbers.hpp"
+#include "unit_option.hpp"
 
 #include <fmt/core.h>
 
@@ -75,12 +75,8 @@ void add_segment_command(CLI::App& app) {
   segment->add_option_function<std::string>(
       "--numbers", [command](const std::string& word) { command->numbers = read_label_numbers(word); },
       "Numbers in a .vtp: fdi, universal, arch14, arch16");
-  segment
-      ->add_option_function<std::string>(
-          "--unit",
-          [command](const std::string& name) { command->options.millimetres_per_unit = millimetres_per_unit(name); },
-          "Unit of the scan's file: mm, cm, m, um, in, also in full and in capitals")
-      ->default_str("mm");
+  add_unit_option(*segment, command->options.millimetres_per_unit,
+                  "Unit of the scan's file: mm, cm, m, um, in, also in full and in capitals");
   segment->add_flag("--overwrite", command->overwrite, "Replace a file that is there already");
   segment->add_option("--threads", command->options.threads, "At most so many threads; 0 = all")->capture_default_str();
   segment->add_option("--models", command->models, "Folder with segment.safetensors and arch.safetensors");
