@@ -70,6 +70,11 @@ Json line_json(const BatchCase& one) {
 
 }  // namespace
 
+std::string ending_of(const fs::path& file) {
+  const bool is_packed = lower_case(file.extension().string()) == ".gz";
+  return (is_packed ? file.stem().extension().string() : "") + file.extension().string();
+}
+
 std::string models_sha256(const fs::path& folder) {
   Json json = Json::array();
   for (const fs::path& file : model_files(folder))
@@ -97,12 +102,10 @@ CaseKey key_of_case(const BatchCase& one, const CaseOptions& options, const std:
     if (of_folder && file == one.scan && !one.is_crown) continue;
     const std::string sha256 = sha256_of_bytes(read_file_bytes(file));
     if (!of_folder && files.empty()) result.scan_sha256 = sha256;
-    // The packed "crown.stl.gz" is read by the ending before the last one.
-    const fs::path packed = lower_case(file.extension().string()) == ".gz" ? file.stem() : fs::path();
     const bool names_tooth = of_folder || (one.is_crown && !one.fdi);
     const auto tooth = of_folder ? tooth_in_name(file) : fdi_in_name(file);
     files.push_back({{"sha256", sha256},
-                     {"ending", lower_case(packed.extension().string() + file.extension().string())},
+                     {"ending", lower_case(ending_of(file))},
                      {"tooth", names_tooth ? value_or_null(tooth) : Json(nullptr)}});
   }
   Json json{{"layout", layout_of_results},

@@ -39,6 +39,9 @@ CaseKey key_of_case(const BatchCase& one, const CaseOptions& options, const std:
 /// The options' part of it, for crowns or scans as `one` is.
 std::string text_of_options(const BatchCase& one, const CaseOptions& options);
 
+/// By which readers take a file's format, as it is written: ".stl", of a packed one ".stl.gz".
+std::string ending_of(const std::filesystem::path& file);
+
 /// All files that the case is read from, and its scan or folder first.
 std::vector<std::filesystem::path> files_of_case(const BatchCase& one);
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "batch/complete_case.hpp"
 
-#include "base/lower_case.hpp"
 #include "report/without_names.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
@@ -86,12 +85,6 @@ BatchOutcome complete_scan(const BatchCase& one, const CaseKey& key, const Compl
   return outcome;
 }
 
-/// A name that tells readers the format and nothing else.
-fs::path format_hint(const fs::path& crown) {
-  const bool is_packed = lower_case(crown.extension().string()) == ".gz";
-  return "crown" + (is_packed ? crown.stem().extension().string() : "") + crown.extension().string();
-}
-
 BatchOutcome complete_crown(const BatchCase& one, const CaseKey& key, const CompletionModels& models,
                             const CaseOptions& options, const Wording& worded, const std::function<void()>& go_on) {
   CompleteOptions tooth_options = options.crown;
@@ -113,7 +106,7 @@ BatchOutcome complete_crown(const BatchCase& one, const CaseKey& key, const Comp
   try {
     const std::string bytes = read_file_bytes(one.scan);
     require_same(sha256_of_bytes(bytes), key);
-    crown = read_mesh(bytes, format_hint(one.scan));
+    crown = read_mesh(bytes, "crown" + ending_of(one.scan));
     if (!one.fdi && tooth_options.fdi)
       crown.notes.push_back(fmt::format("Tooth {}, taken from the file's name.", *tooth_options.fdi));
     for (std::string& note : crown.notes) note = worded(note);
