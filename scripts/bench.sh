@@ -18,7 +18,7 @@ version() { dpkg-query -W -f='${Version}' "$1" 2> /dev/null || echo "not install
 run() {
   printf '\n## %s\n\n' "$1"
   shift
-  printf '`%s`\n\n' "$*"
+  printf '`%s`\n\n' "${*//$scratch/SCRATCH}"
   "$@" | sed -E 's/^(#+ )/#\1/'  # its headings one level down
 }
 
