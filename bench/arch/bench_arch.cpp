@@ -2,22 +2,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // How the roots of labelled scans stand, whether a scan's pose has a say in them, and how long arches take: bench_arch
-// axes|pose|time SCAN.ply... (labels beside each, as SCAN.json in the form of Teeth3DS). `axes` lays each tooth's root
-// axis beside its neighbours' mean, for crowns alone and for the arch, and the means of each type beside those of Tong
-// et al., Am J Orthod Dentofacial Orthop 2012;141:604. `pose` completes each scan three times: as it is, with its
+// axes|pose|time|large SCAN.ply... (labels beside each, as SCAN.json in the form of Teeth3DS). `axes` lays each tooth's
+// root axis beside its neighbours' mean, for crowns alone and for the arch, and the means of each type beside those of
+// Tong et al., Am J Orthod Dentofacial Orthop 2012;141:604. `pose` completes each scan three times: as it is, with its
 // elements in another order, and turned, moved and rounded to float. `time` takes arches beside their teeth one after
-// the other.
+// the other; `large` refines each scan to 150,000 vertices and takes it from its files on.
 #include "base/float_bits.hpp"
 #include "base/peak_memory.hpp"
+#include "common/hostile_crowns.hpp"
 #include "common/timing.hpp"
+#include "io/scan_labels.hpp"
+#include "io/write_labels.hpp"
 #include "mesh/closest_point.hpp"
+#include "report/scan_input.hpp"
 #include "rhizodont/arch.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "segment/arch_pose.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/label_numbers.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 #include <nlohmann/json.hpp>
 
 #include <Eigen/Geometry>
@@ -25,6 +31,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -260,15 +267,49 @@ void time(const std::vector<std::filesystem::path>& scans, const CompletionModel
   fmt::print("peak memory {:.0f} MB\n", peak_memory_mb());
 }
 
+/// The same surface with the same labels on `vertices` vertices.
+LabelledScan refined_scan(const LabelledScan& scan, std::size_t vertices) {
+  LabelledScan fine{test::refined_to(scan.mesh, vertices), {}};
+  const ClosestPointIndex index(scan.mesh);
+  const std::vector<int> labels = triangle_labels_from_vertices(scan.mesh, scan.fdi);
+  for (const Point& p : fine.mesh.vertices)
+    fine.fdi.push_back(labels[static_cast<std::size_t>(index.closest(p).triangle)]);
+  return fine;
+}
+
+void large(const std::vector<std::filesystem::path>& scans, const CompletionModels& models) {
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / fmt::format("bench_arch_{}", getpid());
+  std::filesystem::create_directory(folder);
+  fmt::print("scan  vertices  teeth  with roots  read, labels cleaned s  arch s  together s\n");
+  for (const auto& path : scans) {
+    MeshFile file;
+    const LabelledScan fine = refined_scan(read_scan(path), 150000);
+    file.mesh = fine.mesh;
+    round_to_float(file.mesh);
+    save_mesh(folder / "scan.ply", file);
+    std::ofstream(folder / "scan.json") << teeth3ds_json(
+        fine.fdi, jaw_of_fdi(*std::max_element(fine.fdi.begin(), fine.fdi.end())), file);
+    ScanInput input;
+    CompletedArch arch;
+    const double read =
+        median_seconds([&] { input = rhizodont::read_scan(folder / "scan.ply", ScanLabelSource{}); }, 1);
+    const double completed = median_seconds([&] { arch = complete_arch(input.scan, models); }, 1);
+    fmt::print("{:>16}  {}  {:>2}  {:>2}  {:.2f}  {:.2f}  {:.2f}\n", path.stem().string(), fine.mesh.vertices.size(),
+               arch.teeth.size(), arch.rooted(), read, completed, read + completed);
+  }
+  std::filesystem::remove_all(folder);
+  fmt::print("peak memory {:.0f} MB\n", peak_memory_mb());
+}
+
 }  // namespace
 
 int main(int count, char** words) {
   const std::vector<std::filesystem::path> scans(words + std::min(count, 2), words + count);
   const std::map<std::string, void (*)(const std::vector<std::filesystem::path>&, const CompletionModels&)> modes{
-      {"axes", axes}, {"pose", pose}, {"time", time}};
+      {"axes", axes}, {"pose", pose}, {"time", time}, {"large", large}};
   const auto mode = modes.find(count > 1 ? words[1] : "");
   if (mode == modes.end() || scans.empty()) {
-    fmt::print(stderr, "usage: bench_arch axes|pose|time SCAN.ply...\n");
+    fmt::print(stderr, "usage: bench_arch axes|pose|time|large SCAN.ply...\n");
     return 2;
   }
   mode->second(scans, CompletionModels::load(default_models_folder()));
