@@ -73,16 +73,12 @@ void print_summary(const CompletedArch& arch) {
 }
 
 /// Teeth of a scan without labels.
-RawLabels found_labels(const MeshFile& scan, const ArchCommand& command, const std::filesystem::path& models,
-                       std::vector<std::string>& notes) {
+SegmentedScan found_teeth(const TriangleMesh& scan, const ArchCommand& command, const SegmentModels& models) {
   SegmentOptions options;
   options.millimetres_per_unit = command.options.tooth.millimetres_per_unit;
   options.jaw = command.source.jaw;
   options.threads = command.options.tooth.threads;
-  SegmentedScan found = segment_scan(scan.mesh, SegmentModels::load(models), options);
-  notes.push_back(found.jaw_reason);
-  notes.insert(notes.end(), found.notes.begin(), found.notes.end());
-  return {std::move(found.fdi), "a search for the teeth in the scan", found.jaw, LabelNumbers::fdi};
+  return segment_scan(scan, models, options);
 }
 
 void run(ArchCommand& command) {
@@ -97,11 +93,13 @@ void run(ArchCommand& command) {
         throw UsageError(fmt::format("Tooth {} has two root lengths.", fdi));
   }
   for (const std::filesystem::path& file : model_files(models)) inputs.push_back(file);
-  std::vector<std::string> found_notes;
-  if (std::filesystem::exists(segment_model_files(models).front()))
-    command.source.find = [&](const MeshFile& scan) { return found_labels(scan, command, models, found_notes); };
+  if (SegmentModels::are_in(models)) {
+    for (const std::filesystem::path& file : segment_model_files(models)) inputs.push_back(file);
+    command.source.find = [&](const TriangleMesh& scan) {
+      return found_teeth(scan, command, SegmentModels::load(models));
+    };
+  }
   ScanInput input = read_scan(command.scan, command.source, command.options.tooth.millimetres_per_unit);
-  input.notes.insert(input.notes.end(), found_notes.begin(), found_notes.end());
   const std::vector<std::filesystem::path> names = arch_file_names(input.scan, command.files, command.output);
   require_safe_outputs(inputs, names);
   require_new(names, command.overwrite);

@@ -109,12 +109,12 @@ void run(BatchCommand& command) {
   const BatchManifest manifest = load_manifest(command.manifest);
   const std::filesystem::path models =
       command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
-  const CompletionModels loaded = CompletionModels::load(models);
+  const BatchModels loaded = load_batch_models(models);
   heed_stop_signals();
   BatchCallbacks callbacks;
   callbacks.stop = [] { return stop_signal.load() != 0; };
   if (!command.quiet) callbacks.finished = say_finished;
-  const BatchResult result = run_batch(manifest, models, loaded, options, command.output, callbacks);
+  const BatchResult result = run_batch(manifest, loaded, options, command.output, callbacks);
   const BatchProgress& progress = result.progress;
   if (!command.quiet)
     fmt::print("shard {} of {}: {} of {} cases done, {} in part, {} failed{}\n", options.shard.index + 1,

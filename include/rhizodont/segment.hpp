@@ -22,6 +22,8 @@ class RHIZODONT_EXPORT SegmentModels {
  public:
   /// Reads segment.safetensors and arch.safetensors from a folder. Throws InputError if one is missing or damaged.
   static SegmentModels load(const std::filesystem::path& folder);
+  /// Whether a folder holds such a network.
+  static bool are_in(const std::filesystem::path& folder);
   SegmentModels(SegmentModels&&) noexcept;
   SegmentModels& operator=(SegmentModels&&) noexcept;
   ~SegmentModels();

@@ -5,7 +5,6 @@
 #include "base/lower_case.hpp"
 #include "report/json.hpp"
 #include "rhizodont/io.hpp"
-#include "rhizodont/models.hpp"
 #include "rhizodont/report.hpp"
 #include "rhizodont/tooth_file.hpp"
 #include "rhizodont/version.hpp"
@@ -73,13 +72,6 @@ Json line_json(const BatchCase& one) {
 std::string ending_of(const fs::path& file) {
   const bool is_packed = lower_case(file.extension().string()) == ".gz";
   return (is_packed ? file.stem().extension().string() : "") + file.extension().string();
-}
-
-std::string models_sha256(const fs::path& folder) {
-  Json json = Json::array();
-  for (const fs::path& file : model_files(folder))
-    json.push_back({file.filename().string(), sha256_of_bytes(read_file_bytes(file))});
-  return sha256_of_bytes(json.dump());
 }
 
 std::string text_of_options(const BatchCase& one, const CaseOptions& options) {

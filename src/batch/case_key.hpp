@@ -22,9 +22,6 @@ struct CaseOptions {
   bool keep_names = false;                      ///< names of files may stand in results and in what is said
 };
 
-/// The files of a folder with models, and what they are: goes into every key.
-std::string models_sha256(const std::filesystem::path& folder);
-
 /// What a case's results are known by.
 struct CaseKey {
   std::string key;          ///< 32 hexadecimal digits
@@ -33,7 +30,7 @@ struct CaseKey {
 
 /// A hash of all that the results depend on: the bytes of the case's files, their formats by name and the teeth in
 /// their names, the case's line, options, models, and the program's version; neither names nor places. Throws
-/// InputError if a file cannot be read.
+/// InputError if a file cannot be read. @param models  BatchModels::sha256
 CaseKey key_of_case(const BatchCase& one, const CaseOptions& options, const std::string& models);
 
 /// The options' part of it, for crowns or scans as `one` is.

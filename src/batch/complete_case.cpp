@@ -56,16 +56,25 @@ void require_same(const std::string& sha256, const CaseKey& key) {
   if (sha256 != key.scan_sha256) throw InputError("The file changed while it was read.");
 }
 
-BatchOutcome complete_scan(const BatchCase& one, const CaseKey& key, const CompletionModels& models,
+BatchOutcome complete_scan(const BatchCase& one, const CaseKey& key, const BatchModels& models,
                            const CaseOptions& options, const Wording& worded, const std::function<void()>& go_on) {
   ArchOptions arch_options = options.arch;
   arch_options.root_lengths = one.root_lengths;
   arch_options.tooth.threads = 0;  // the batch's own
   if (one.millimetres_per_unit) arch_options.tooth.millimetres_per_unit = *one.millimetres_per_unit;
-  ScanInput input = read_scan(one.scan, one.labels, arch_options.tooth.millimetres_per_unit);
+  ScanLabelSource labels = one.labels;
+  if (models.finder)
+    labels.find = [&](const TriangleMesh& scan) {
+      go_on();
+      SegmentOptions found;
+      found.millimetres_per_unit = arch_options.tooth.millimetres_per_unit;
+      found.jaw = one.labels.jaw;
+      return segment_scan(scan, *models.finder, found);
+    };
+  ScanInput input = read_scan(one.scan, labels, arch_options.tooth.millimetres_per_unit);
   require_same(input.sha256, key);
   for (std::string& note : input.notes) note = worded(note);
-  CompletedArch arch = complete_arch(input.scan, models, arch_options, [&](int, int, int) { go_on(); });
+  CompletedArch arch = complete_arch(input.scan, models.completion, arch_options, [&](int, int, int) { go_on(); });
   const ArchFileOptions files{options.tooth_format, shown_name(one, options), options.labels_vtp, options.labels_vtk};
   refuse_what_no_file_holds(arch, files);
   BatchOutcome outcome;
@@ -139,10 +148,10 @@ std::size_t BatchOutcome::rooted() const {
       std::count_if(teeth.begin(), teeth.end(), [](const ToothOutcome& tooth) { return tooth.rooted; }));
 }
 
-BatchOutcome complete_case(const BatchCase& one, const CaseKey& key, const CompletionModels& models,
+BatchOutcome complete_case(const BatchCase& one, const CaseKey& key, const BatchModels& models,
                            const CaseOptions& options, const std::function<void()>& go_on) {
   const Wording worded(one, options);
-  if (one.is_crown) return complete_crown(one, key, models, options, worded, go_on);
+  if (one.is_crown) return complete_crown(one, key, models.completion, options, worded, go_on);
   const auto refused = [&](const Error& error) {
     return BatchOutcome{static_cast<int>(error.code()), worded(error.what()), {}, {}};
   };

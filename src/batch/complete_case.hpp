@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "batch/batch_models.hpp"
 #include "batch/case_key.hpp"
 #include "batch/manifest.hpp"
-#include "rhizodont/models.hpp"
 #include "rhizodont/output_files.hpp"
 
 #include <functional>
@@ -39,7 +39,7 @@ struct BatchOutcome {
 /// without times, so that a case has always the same bytes; names of files are in them only if the options say so. What
 /// is wrong with the case (InputError, NoResultError, UsageError) becomes its outcome; anything else comes through.
 /// @param go_on  called again and again, not from two threads at once; what it throws stops the work and comes through
-BatchOutcome complete_case(const BatchCase& one, const CaseKey& key, const CompletionModels& models,
+BatchOutcome complete_case(const BatchCase& one, const CaseKey& key, const BatchModels& models,
                            const CaseOptions& options, const std::function<void()>& go_on);
 
 }  // namespace rhizodont

@@ -56,14 +56,13 @@ std::map<std::string, Remembered> remembered_cases(const fs::path& folder) {
 
 class ShardRun {
  public:
-  ShardRun(const BatchManifest& manifest, const fs::path& models_folder, const CompletionModels& models,
-           const BatchOptions& options, const fs::path& folder, const BatchCallbacks& callbacks)
+  ShardRun(const BatchManifest& manifest, const BatchModels& models, const BatchOptions& options,
+           const fs::path& folder, const BatchCallbacks& callbacks)
       : manifest_(manifest),
         models_(models),
         options_(options),
         folder_(folder),
         callbacks_(callbacks),
-        models_sha256_(models_sha256(models_folder)),
         remembered_(remembered_cases(folder)),
         ledger_(folder, options.shard) {}
 
@@ -98,7 +97,7 @@ class ShardRun {
 
   void write_beginning() {
     // Whatever gives the same keys is the same batch.
-    std::string all = manifest_.sha256 + models_sha256_ + RHIZODONT_VERSION;
+    std::string all = manifest_.sha256 + models_.sha256 + RHIZODONT_VERSION;
     BatchCase scan, crown;
     crown.is_crown = true;
     for (const BatchCase& kind : {scan, crown}) all += text_of_options(kind, options_.cases);
@@ -121,7 +120,7 @@ class ShardRun {
     go_on();
     CaseKey key;
     try {
-      key = key_of_case(one, options_.cases, models_sha256_);
+      key = key_of_case(one, options_.cases, models_.sha256);
     } catch (const InputError& error) {
       BatchOutcome unreadable;
       unreadable.code = static_cast<int>(error.code());
@@ -213,11 +212,10 @@ class ShardRun {
   }
 
   const BatchManifest& manifest_;
-  const CompletionModels& models_;
+  const BatchModels& models_;
   const BatchOptions& options_;
   const fs::path& folder_;
   const BatchCallbacks& callbacks_;
-  std::string models_sha256_;
   std::map<std::string, Remembered> remembered_;
   BatchLedger ledger_;
   BatchResult result_;
@@ -233,11 +231,10 @@ void require_in_range(const BatchOptions& options) {
 
 }  // namespace
 
-BatchResult run_batch(const BatchManifest& manifest, const fs::path& models_folder, const CompletionModels& models,
-                      const BatchOptions& options, const fs::path& folder, const BatchCallbacks& callbacks) {
+BatchResult run_batch(const BatchManifest& manifest, const BatchModels& models, const BatchOptions& options,
+                      const fs::path& folder, const BatchCallbacks& callbacks) {
   require_in_range(options);
-  return with_threads(options.threads,
-                      [&] { return ShardRun(manifest, models_folder, models, options, folder, callbacks).run(); });
+  return with_threads(options.threads, [&] { return ShardRun(manifest, models, options, folder, callbacks).run(); });
 }
 
 }  // namespace rhizodont

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "batch/batch_models.hpp"
 #include "batch/case_key.hpp"
 #include "batch/manifest.hpp"
 #include "batch/shard.hpp"
-#include "rhizodont/models.hpp"
 
 #include <cstddef>
 #include <filesystem>
@@ -60,9 +60,7 @@ inline constexpr std::size_t most_endings = 3;
 /// time. A case that fails does not stop the others; a killed run loses the case that it was at.
 /// The union of all shards' results has always the same bytes, in how many parts and runs ever it was made.
 /// Throws OutputError where results cannot be written, which ends the run.
-/// @param models_folder  that the models were loaded from
-BatchResult run_batch(const BatchManifest& manifest, const std::filesystem::path& models_folder,
-                      const CompletionModels& models, const BatchOptions& options, const std::filesystem::path& folder,
-                      const BatchCallbacks& callbacks = {});
+BatchResult run_batch(const BatchManifest& manifest, const BatchModels& models, const BatchOptions& options,
+                      const std::filesystem::path& folder, const BatchCallbacks& callbacks = {});
 
 }  // namespace rhizodont

@@ -121,7 +121,16 @@ double teeth_across(const TriangleMesh& mesh, const std::vector<int>& fdi) {
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
-RawLabels raw_labels(const fs::path& scan, const MeshFile& file, const ScanLabelSource& source) {
+RawLabels found_labels(const ScanLabelSource& source, ScanInput& input) {
+  SegmentedScan found = source.find(input.file.mesh);
+  input.found = std::move(found.teeth);
+  input.notes.push_back(found.jaw_reason);
+  input.notes.insert(input.notes.end(), found.notes.begin(), found.notes.end());
+  return {std::move(found.fdi), "a search for the teeth in the scan", found.jaw, LabelNumbers::fdi};
+}
+
+RawLabels raw_labels(const fs::path& scan, const ScanLabelSource& source, ScanInput& input) {
+  const MeshFile& file = input.file;
   const auto from_file = [&](const std::string& json) { return labels_from_teeth3ds(json, file); };
   if (!source.labels.empty()) return reading(source.labels, from_file);
   if (!source.palette.empty())
@@ -129,7 +138,7 @@ RawLabels raw_labels(const fs::path& scan, const MeshFile& file, const ScanLabel
                                reading(source.palette, [](const std::string& text) { return read_palette(text); }));
   if (!source.array.empty() || has_label_array(file)) return labels_from_array(file, source.array);
   if (is_there(beside(scan))) return reading(beside(scan), from_file);
-  if (source.find) return source.find(file);
+  if (source.find) return found_labels(source, input);
   throw InputError(
       "Nothing tells this scan's teeth apart: it has no array of labels, and no file of labels lies beside it. Name "
       "one "
@@ -177,7 +186,7 @@ ScanInput read_scan(const fs::path& path, const ScanLabelSource& source, double 
   });
   input.notes = input.file.notes;
   input.file.notes.clear();
-  const RawLabels raw = raw_labels(path, input.file, source);
+  const RawLabels raw = raw_labels(path, source, input);
   try {
     set_labels(input, raw, source, millimetres_per_unit);
   } catch (const InputError& error) {

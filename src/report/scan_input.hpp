@@ -6,6 +6,7 @@
 #include "io/scan_labels.hpp"
 #include "rhizodont/arch.hpp"
 #include "rhizodont/io.hpp"
+#include "rhizodont/segment.hpp"
 #include "teeth/clean_labels.hpp"
 
 #include <filesystem>
@@ -24,8 +25,8 @@ struct ScanLabelSource {
   std::optional<LabelNumbers> numbers;
   std::optional<Jaw> jaw;
   std::optional<bool> first_is_patients_right;  ///< of numbers along the arch
-  /// Finds the teeth of a scan that nothing tells apart; empty: such a scan is refused.
-  std::function<RawLabels(const MeshFile& scan)> find;
+  /// Finds the teeth of a scan that nothing tells apart (`segment_scan`); empty: such a scan is refused.
+  std::function<SegmentedScan(const TriangleMesh& scan)> find;
 };
 
 /// A scan with its teeth, as read.
@@ -36,6 +37,7 @@ struct ScanInput {
   bool is_folder = false;
   std::string sha256;  ///< of the scan's file as it lies there; empty for a folder
   LabelledScan scan;
+  std::vector<FoundTooth> found;   ///< where the teeth were searched for
   std::vector<std::string> notes;  ///< of reading, what the numbers were taken for, what was cleaned; a sentence each
 };
 

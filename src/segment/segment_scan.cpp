@@ -79,6 +79,11 @@ std::vector<std::filesystem::path> segment_model_files(const std::filesystem::pa
   return {folder / "segment.safetensors", folder / "arch.safetensors"};
 }
 
+bool SegmentModels::are_in(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  return std::filesystem::exists(segment_model_files(folder).front(), ignored);
+}
+
 SegmentModels SegmentModels::load(const std::filesystem::path& folder) {
   const std::vector<std::filesystem::path> files = segment_model_files(folder);
   return SegmentModels(

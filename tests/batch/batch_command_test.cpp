@@ -219,6 +219,26 @@ TEST_F(Batch, NothingTellsOfThePatient) {
   EXPECT_EQ(status("named")["by_case"][0]["scan"], "Smith_Hans/Smith_Hans_34.ply");
 }
 
+TEST_F(Batch, ScansWithoutLabelsAreSearchedForTeeth) {
+  const fs::path scan = fs::path(RHIZODONT_SOURCE_DIR) / "../shared/data/arches/scan_072_upper.ply";
+  place("crown_34.ply", "lonely.ply", 0);
+  folder.write("manifest.csv", "scan\nlonely.ply\n");
+  const Outcome lonely = run("batch manifest.csv -o lonely --e 1");
+  EXPECT_EQ(lonely.code, 6);
+  EXPECT_NE(lonely.error.find("too small for a jaw"), std::string::npos) << lonely.error;
+  if (!fs::exists(scan)) GTEST_SKIP() << "no labelled scans at " << scan;
+  fs::copy_file(scan, folder.path() / "scan.ply");
+  folder.write("manifest.csv", "scan\nscan.ply\n");
+  run("batch manifest.csv -o out --e 1");
+  const Json one = status("out")["by_case"][0];
+  EXPECT_GE(one["teeth"], 12);
+  EXPECT_GE(one["rooted"], 12);
+  EXPECT_EQ(run("segment scan.ply -o found.json").code, 0);
+  const Json found = Json::parse(read_all(folder.path() / "found.json"));
+  const Json used = Json::parse(read_all(folder.path() / "out" / one["folder"].get<std::string>() / "labels.json"));
+  EXPECT_EQ(used["labels"], found["labels"]);
+}
+
 TEST_F(Batch, WrongUseIsSaidInOneLine) {
   folder.write("manifest.csv", "scan,fdi\nc.ply,34\nd.ply,99\n");
   folder.write("good.csv", "scan,fdi\nc.ply,34\n");
