@@ -98,15 +98,35 @@ class Costs {
     return cost;
   }
 
+  /// Of the distance between neighbours: as in the model, or, where teeth lack between them, of a closed gap.
   double distance(int i, int s, int j, int next) const {
-    const double expected = (model_[static_cast<std::size_t>(s)] - model_[static_cast<std::size_t>(next)]).norm();
-    const double off = (tooth(i).middle - tooth(j).middle).norm() - expected;
-    const double deviation = options_.distance_mm + options_.distance_share * expected;
-    const double cost = 0.5 * (off / deviation) * (off / deviation);
-    return -log_sum(-cost, -options_.most_off);
+    const double is = (tooth(i).middle - tooth(j).middle).norm();
+    const double open =
+        likelihood(is, (model_[static_cast<std::size_t>(s)] - model_[static_cast<std::size_t>(next)]).norm());
+    if (next == s + 1) return -open;
+    const double closed = likelihood(is, (width(s) + width(next)) / 2);
+    return -log_sum(std::log(1 - options_.closed) + open, std::log(options_.closed) + closed);
   }
 
  private:
+  /// Logarithm of how likely a distance is where another one is expected, mm.
+  double likelihood(double is, double expected) const {
+    const double off = (is - expected) / (options_.distance_mm + options_.distance_share * expected);
+    return log_sum(-0.5 * off * off, -options_.most_off);
+  }
+
+  /// What a tooth takes up along the arch, from the distances to its neighbours, mm.
+  double width(int s) const {
+    double sum = 0;
+    int sides = 0;
+    for (const int beside : {s - 1, s + 1})
+      if (beside >= 0 && beside < place_count) {
+        sum += (model_[static_cast<std::size_t>(s)] - model_[static_cast<std::size_t>(beside)]).norm();
+        ++sides;
+      }
+    return sum / sides;
+  }
+
   const std::vector<ToothInstance>& teeth_;
   const std::vector<std::size_t>& order_;
   Jaw jaw_;
@@ -179,6 +199,86 @@ void require_numbers_of(Jaw jaw, const NumberingOptions& options) {
   }
 }
 
+/// What a tooth's number is if place `chosen` is its (-1: it is no tooth), and what else it might be.
+void describe(std::array<double, place_count> probability, int chosen, Jaw jaw, ToothNumber& number) {
+  double none = 1;
+  for (double& p : probability) {
+    p = std::clamp(p, 0.0, 1.0);
+    none -= p;
+  }
+  none = std::max(none, 0.0);
+  if (chosen >= 0) number.fdi = fdi_of_place(chosen, jaw);
+  number.probability = chosen >= 0 ? probability[static_cast<std::size_t>(chosen)] : none;
+  if (chosen >= 0) number.second_probability = none;
+  for (int s = 0; s < place_count; ++s)
+    if (s != chosen && probability[static_cast<std::size_t>(s)] > number.second_probability) {
+      number.second_probability = probability[static_cast<std::size_t>(s)];
+      number.second = fdi_of_place(s, jaw);
+    }
+}
+
+/// One supposition about which teeth were taken out, carried through.
+struct Supposition {
+  Table sums, behind;
+  double evidence = -impossible;  ///< logarithm of the sum of all readings
+  double best = -impossible;      ///< of the most likely one
+  std::vector<int> chosen;        ///< place by order in it; -1: no tooth
+};
+
+/// @param prior  logarithm
+Supposition carried_through(const Costs& costs, double prior) {
+  Supposition result;
+  result.sums = forward(costs, false, nullptr);
+  result.behind = backward(costs);
+  double nothing = 0;  // the reading in which nothing is a tooth
+  for (int i = 0; i < costs.count(); ++i) nothing -= costs.nothing(i);
+  result.evidence = nothing;
+  std::vector<std::array<std::pair<int, int>, place_count>> before;
+  const Table best = forward(costs, true, &before);
+  std::pair<int, int> at{-1, -1};
+  for (int i = 0; i < costs.count(); ++i)
+    for (int s = 0; s < place_count; ++s) {
+      const auto n = static_cast<std::size_t>(i), place = static_cast<std::size_t>(s);
+      const double end = ending(costs, i, s);
+      result.evidence = log_sum(result.evidence, result.sums[n][place] - end);
+      if (best[n][place] - end > result.best) {
+        result.best = best[n][place] - end;
+        at = {i, s};
+      }
+    }
+  result.chosen.assign(static_cast<std::size_t>(costs.count()), -1);
+  while (at.first >= 0) {
+    result.chosen[static_cast<std::size_t>(at.first)] = at.second;
+    at = before[static_cast<std::size_t>(at.first)][static_cast<std::size_t>(at.second)];
+  }
+  result.evidence += prior;
+  result.best += prior;
+  for (auto& row : result.sums)
+    for (double& value : row) value += prior;
+  return result;
+}
+
+/// Orthodontists take premolars out in pairs: as one event that is far likelier than twice one tooth lacking.
+std::vector<Supposition> suppositions(const std::vector<ToothInstance>& teeth, const std::vector<std::size_t>& order,
+                                      Jaw jaw, const ArchModel& model, const NumberingOptions& options) {
+  const double first = options.first_premolars_out, second = options.second_premolars_out;
+  std::vector<Supposition> all;
+  for (const auto& [number, share] : {std::pair(0, 1 - first - second), std::pair(4, first), std::pair(5, second)}) {
+    NumberingOptions supposed = options;
+    bool contradicts = false;
+    if (number > 0)
+      for (const int place : {8 - number, number + 7}) {
+        const int fdi = fdi_of_place(place, jaw);
+        contradicts = contradicts || std::any_of(options.given.begin(), options.given.end(),
+                                                 [&](const auto& given) { return given.second == fdi; });
+        supposed.missing_teeth.insert(fdi);
+      }
+    if (contradicts || !(share > 0)) continue;
+    all.push_back(carried_through(Costs(teeth, order, jaw, model, supposed), std::log(share)));
+  }
+  return all;
+}
+
 }  // namespace
 
 int fdi_of_place(int place, Jaw jaw) {
@@ -198,52 +298,21 @@ ArchNumbers number_teeth(const std::vector<ToothInstance>& teeth, Jaw jaw, const
   numbers.teeth.resize(teeth.size());
   if (teeth.empty()) return numbers;
   const std::vector<std::size_t> order = order_along_arch(teeth, jaw, model);
-  const Costs costs(teeth, order, jaw, model, options);
-  const Table sums = forward(costs, false, nullptr), behind = backward(costs);
-  double all = 0;
-  for (int i = 0; i < costs.count(); ++i) all -= costs.nothing(i);  // that nothing is a tooth
-  if (!std::isfinite(all)) all = -impossible;
-  for (int i = 0; i < costs.count(); ++i)
-    for (int s = 0; s < place_count; ++s)
-      all = log_sum(all, sums[static_cast<std::size_t>(i)][static_cast<std::size_t>(s)] - ending(costs, i, s));
-  if (all == -impossible) throw UsageError("The teeth's given numbers contradict their order along the arch.");
-  numbers.evidence = all;
-
-  std::vector<std::array<std::pair<int, int>, place_count>> before;
-  const Table best = forward(costs, true, &before);
-  std::pair<int, int> at{-1, -1};
-  double least = -impossible;
-  for (int i = 0; i < costs.count(); ++i)
-    for (int s = 0; s < place_count; ++s) {
-      const double value = best[static_cast<std::size_t>(i)][static_cast<std::size_t>(s)] - ending(costs, i, s);
-      if (value > least) {
-        least = value;
-        at = {i, s};
-      }
-    }
-  std::vector<int> chosen(teeth.size(), -1);  // by order
-  while (at.first >= 0) {
-    chosen[static_cast<std::size_t>(at.first)] = at.second;
-    at = before[static_cast<std::size_t>(at.first)][static_cast<std::size_t>(at.second)];
+  const std::vector<Supposition> all = suppositions(teeth, order, jaw, model, options);
+  numbers.evidence = -impossible;
+  const Supposition* likeliest = nullptr;
+  for (const Supposition& one : all) {
+    numbers.evidence = log_sum(numbers.evidence, one.evidence);
+    if (likeliest == nullptr || one.best > likeliest->best) likeliest = &one;
   }
-  for (int i = 0; i < costs.count(); ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    ToothNumber& number = numbers.teeth[order[n]];
-    double none = 1;
+  if (likeliest == nullptr || !std::isfinite(numbers.evidence))
+    throw UsageError("The teeth's given numbers contradict their order along the arch.");
+  for (std::size_t n = 0; n < teeth.size(); ++n) {
     std::array<double, place_count> probability{};
-    for (std::size_t s = 0; s < place_count; ++s) {
-      probability[s] = std::clamp(std::exp(sums[n][s] + behind[n][s] - all), 0.0, 1.0);
-      none -= probability[s];
-    }
-    none = std::max(none, 0.0);
-    if (chosen[n] >= 0) number.fdi = fdi_of_place(chosen[n], jaw);
-    number.probability = chosen[n] >= 0 ? probability[static_cast<std::size_t>(chosen[n])] : none;
-    if (chosen[n] >= 0) number.second_probability = none;
-    for (int s = 0; s < place_count; ++s)
-      if (s != chosen[n] && probability[static_cast<std::size_t>(s)] > number.second_probability) {
-        number.second_probability = probability[static_cast<std::size_t>(s)];
-        number.second = fdi_of_place(s, jaw);
-      }
+    for (const Supposition& one : all)
+      for (std::size_t s = 0; s < place_count; ++s)
+        probability[s] += std::exp(one.sums[n][s] + one.behind[n][s] - numbers.evidence);
+    describe(probability, likeliest->chosen[n], jaw, numbers.teeth[order[n]]);
   }
   return numbers;
 }

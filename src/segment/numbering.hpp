@@ -21,17 +21,20 @@ int place_of_fdi(int fdi);
 
 /// What numbers are weighed by, in units of the logarithm of a probability.
 struct NumberingOptions {
-  double network_trust = 0.9;        ///< 0..1: share of what the network says of a tooth that is believed
-  double missing = 2.2;              ///< cost of each tooth that lacks between two others
-  double missing_at_end = 0.7;       ///< of each that lacks behind the last one, wisdom teeth apart
-  double wisdom = 1.5;               ///< of each wisdom tooth that is there
-  double distance_mm = 1.0;          ///< deviation of the distance between two teeth from what the arch model says
-  double distance_share = 0.12;      ///< and that part which grows with the distance
-  double most_off = 4.5;             ///< what a distance can cost at most: gaps close and open
-  double no_tooth = 2.0;             ///< cost of taking what was found for no tooth
-  double no_tooth_point = 0.08;      ///< more of it for each point that it has
-  std::set<int> missing_teeth;       ///< FDI numbers that nobody has
-  std::map<std::size_t, int> given;  ///< numbers of teeth that a person has said, by their place in the list
+  double network_trust = 0.9;           ///< 0..1: share of what the network says of a tooth that is believed
+  double missing = 2.2;                 ///< cost of each tooth that lacks between two others
+  double missing_at_end = 0.7;          ///< of each that lacks behind the last one, wisdom teeth apart
+  double first_premolars_out = 0.06;    ///< 0..1: share of jaws whose first premolars were taken out on both sides
+  double second_premolars_out = 0.015;  ///< 0..1: and second ones
+  double closed = 0.5;                  ///< 0..1: share of gaps whose sides have come together
+  double wisdom = 1.5;                  ///< of each wisdom tooth that is there
+  double distance_mm = 1.0;             ///< deviation of the distance between two teeth from what the arch model says
+  double distance_share = 0.12;         ///< and that part which grows with the distance
+  double most_off = 4.5;                ///< what a distance can cost at most: gaps close and open
+  double no_tooth = 2.0;                ///< cost of taking what was found for no tooth
+  double no_tooth_point = 0.08;         ///< more of it for each point that it has
+  std::set<int> missing_teeth;          ///< FDI numbers that nobody has
+  std::map<std::size_t, int> given;     ///< numbers of teeth that a person has said, by their place in the list
 };
 
 /// A tooth's number, and what else it might be.

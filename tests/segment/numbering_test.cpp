@@ -74,6 +74,31 @@ TEST(Numbering, LeavesOutWhatIsMissing) {
   EXPECT_EQ(numbers_of(number_teeth(teeth(part), Jaw::lower, mean_arch())), part);
 }
 
+TEST(Numbering, BelievesTheNetworkWherePremolarsWereTakenOutAndTheGapsClosed) {
+  const std::vector<int> upper{17, 16, 15, 13, 12, 11, 21, 22, 23, 25, 26, 27};
+  std::vector<ToothInstance> read = teeth(upper);
+  for (std::size_t i = 0; i < upper.size(); ++i) {
+    const int number = upper[i] % 10;
+    if (number < 5) continue;
+    // Each stands where the one before it would, and the network wavers between the two.
+    read[i].middle = tooth(upper[i] - 1).middle;
+    const auto place = static_cast<std::size_t>(place_of_fdi(upper[i])),
+               lower = static_cast<std::size_t>(place_of_fdi(upper[i] - 1));
+    read[i].places.fill(0.05 / arch_place_count);
+    read[i].places[place] += 0.6;
+    read[i].places[lower] += 0.35;
+  }
+  const ArchNumbers numbers = number_teeth(read, Jaw::upper, mean_arch());
+  EXPECT_EQ(numbers_of(numbers), upper);
+  for (const ToothNumber& n : numbers.teeth) {
+    EXPECT_LE(n.probability + n.second_probability, 1 + 1e-9);
+    EXPECT_GT(n.probability, n.second_probability);
+  }
+  NumberingOptions never;
+  never.first_premolars_out = never.second_premolars_out = 0;
+  EXPECT_GT(numbers.evidence, number_teeth(read, Jaw::upper, mean_arch(), never).evidence);
+}
+
 TEST(Numbering, KnowsWisdomTeeth) {
   const std::vector<int> lower{38, 37, 36, 35, 34, 33, 32, 31, 41, 42, 43, 44, 45, 46, 47, 48};
   EXPECT_EQ(numbers_of(number_teeth(teeth(lower, 0.8), Jaw::lower, mean_arch())), lower);
