@@ -120,6 +120,8 @@ std::vector<std::int32_t> thinned(std::span<const float> xyz, float spacing) {
     std::array<float, 3> mean{};
     for (end = begin; end < n && places[end].cell == places[begin].cell; ++end)
       for (std::size_t a = 0; a < 3; ++a) mean[a] += xyz[3 * static_cast<std::size_t>(places[end].point) + a];
+    // Two points are equally far from their mean: rounding must not choose between them.
+    const float alike = 1e-3F * spacing * spacing;
     float least = std::numeric_limits<float>::infinity();
     std::int32_t best = places[begin].point;
     for (std::size_t i = begin; i < end; ++i) {
@@ -129,7 +131,7 @@ std::vector<std::int32_t> thinned(std::span<const float> xyz, float spacing) {
             xyz[3 * static_cast<std::size_t>(places[i].point) + a] - mean[a] / static_cast<float>(end - begin);
         distance += d * d;
       }
-      if (distance < least) {
+      if (distance < least - alike) {
         least = distance;
         best = places[i].point;
       }

@@ -51,7 +51,7 @@ class CloudGrid {
 };
 
 /// One point of each cell of a grid with edge `spacing` through the origin: the one nearest to the mean of those in the
-/// cell, ties to the smaller index. In the order of cells, x fastest.
+/// cell, of those that are about as near the smallest index. In the order of cells, x fastest.
 std::vector<std::int32_t> thinned(std::span<const float> xyz, float spacing);
 
 }  // namespace rhizodont

@@ -41,7 +41,29 @@ void weigh(const ScanLevel& fine, const ScanLevel& coarse, std::vector<float>& w
   }
 }
 
+/// Turns the vectors that begin every `width` numbers from `first` on.
+void turn_vectors(const Eigen::Matrix3d& rotation, std::vector<float>& values, std::size_t first, std::size_t width) {
+  const Eigen::Matrix3f turn = rotation.cast<float>();
+  for (std::size_t i = first; i + 2 < values.size(); i += width) {
+    Eigen::Map<Eigen::Vector3f> v(values.data() + i);
+    v = (turn * v).eval();
+  }
+}
+
 }  // namespace
+
+void turn(const Eigen::Matrix3d& rotation, ScanCloud& cloud) {
+  turn_vectors(rotation, cloud.positions, 0, 3);
+  turn_vectors(rotation, cloud.normals, 0, 3);
+}
+
+void turn(const Eigen::Matrix3d& rotation, ScanPyramid& pyramid) {
+  for (ScanLevel& level : pyramid.levels) {
+    turn_vectors(rotation, level.positions, 0, 3);
+    turn_vectors(rotation, level.normals, 0, 3);
+  }
+  for (const std::size_t first : {0, 3}) turn_vectors(rotation, pyramid.features, first, scan_feature_count);
+}
 
 ScanPyramid scan_pyramid(const ScanCloud& cloud, const ScanShape& shape) {
   check_scan_shape(shape);

@@ -4,6 +4,8 @@
 
 #include "networks/scan_shape.hpp"
 
+#include <Eigen/Core>
+
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -55,6 +57,11 @@ struct ScanPyramid {
 
 /// Throws InputError for arrays that do not fit, values that are not finite and for a cloud without points.
 ScanPyramid scan_pyramid(const ScanCloud& cloud, const ScanShape& shape);
+
+/// Turns points about their frame's origin. Which of them a pyramid has, and who is whose neighbour, stays as it is: it
+/// does not hang on how the points were turned.
+void turn(const Eigen::Matrix3d& rotation, ScanCloud& cloud);
+void turn(const Eigen::Matrix3d& rotation, ScanPyramid& pyramid);
 
 /// Positions over this and normals go with the features into each level's edges.
 inline float scan_edge_unit(const ScanShape& shape, std::size_t level) {

@@ -127,8 +127,17 @@ Eigen::Vector3d facing_most(const TriangleMesh& scan) {
     const auto face = static_cast<int>(2 * axis + (a[axis] < 0));
     sums[static_cast<std::size_t>((face * cells + cell((axis + 1) % 3)) * cells + cell((axis + 2) % 3))] += a;
   }
-  return *std::max_element(sums.begin(), sums.end(),
-                           [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
+  Eigen::Vector3d most = *std::max_element(
+      sums.begin(), sums.end(), [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
+  // The cells are the world's: the plane's own directions, all of them, do not hang on how the scan lies.
+  constexpr double alike = 0.97;  // cosine
+  for (int round = 0; round < 3; ++round) {
+    const Eigen::Vector3d direction = most.normalized();
+    most = Eigen::Vector3d::Zero();
+    for (std::size_t t = 0; t < scan.triangles.size(); ++t)
+      if (const Eigen::Vector3d a = triangle_area_vector(scan, t); a.dot(direction) > alike * a.norm()) most += a;
+  }
+  return most;
 }
 
 }  // namespace
@@ -158,25 +167,13 @@ Eigen::Matrix3d rotation_to(const Eigen::Vector3d& up, const Eigen::Vector3d& fr
   return rotation;
 }
 
-Eigen::Vector3d mean_place(const ScanCloud& cloud) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < cloud.size(); ++i) sum += vector_at(cloud.positions, i);
-  return sum / static_cast<double>(cloud.size());
-}
-
-ScanCloud turned(const ScanCloud& cloud, const Eigen::Matrix3d& rotation) {
-  ScanCloud result = cloud;
-  const Eigen::Matrix3f turn = rotation.cast<float>();
-  const Eigen::Vector3f middle = mean_place(cloud).cast<float>();
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const Eigen::Vector3f p = turn * (float_vector_at(cloud.positions, i) - middle),
-                          n = turn * float_vector_at(cloud.normals, i);
-    for (std::size_t a = 0; a < 3; ++a) {
-      result.positions[3 * i + a] = p[static_cast<Eigen::Index>(a)];
-      result.normals[3 * i + a] = n[static_cast<Eigen::Index>(a)];
-    }
-  }
-  return result;
+void move_origin_to_mean(ScanFrame& frame, ScanCloud& cloud) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < cloud.size(); ++i) mean += vector_at(cloud.positions, i);
+  mean /= static_cast<double>(cloud.size());
+  frame.origin += frame.rotation.transpose() * mean;
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i)
+    cloud.positions[i] -= static_cast<float>(mean[static_cast<Eigen::Index>(i % 3)]);
 }
 
 ScanFrame first_frame(const TriangleMesh& scan) {

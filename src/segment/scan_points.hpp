@@ -36,11 +36,8 @@ ScanPoints scan_points(const TriangleMesh& scan, const ScanFrame& frame);
 /// that vanishes, any. `up` unit.
 Eigen::Matrix3d rotation_to(const Eigen::Vector3d& up, const Eigen::Vector3d& front);
 
-/// Mean of a cloud's places; it has points.
-Eigen::Vector3d mean_place(const ScanCloud& cloud);
-
-/// The same points in a frame that is turned against theirs; the origin goes to their mean.
-ScanCloud turned(const ScanCloud& cloud, const Eigen::Matrix3d& rotation);
+/// Puts the frame's origin where the mean of its points is. The cloud has points.
+void move_origin_to_mean(ScanFrame& frame, ScanCloud& cloud);
 
 /// A frame that turns and moves with the scan: z is the way that its surface faces on the whole, or, of a closed model,
 /// away from its flat base; y towards the part farthest from the middle. Origin: the surface's centroid. Throws

@@ -16,15 +16,6 @@ Eigen::Matrix3d upright(const ScanReading& said) {
   return rotation_to(z.normalized(), vector_of(said.front));
 }
 
-/// The rotation in steps of some degrees: what hangs on which points were chosen does not then choose other points.
-Eigen::Matrix3d in_steps(const Eigen::Matrix3d& rotation) {
-  constexpr double step = 0.06;  // rad; the network was trained with more
-  const Eigen::AngleAxisd turn(rotation);
-  const Eigen::Vector3d steps = (turn.angle() / step * turn.axis()).array().round();
-  if (steps.isZero()) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(step * steps.norm(), steps.normalized()).toRotationMatrix();
-}
-
 }  // namespace
 
 Eigen::Vector3d TeethReading::place(std::size_t point) const { return vector_at(pyramid.levels[0].positions, point); }
@@ -40,17 +31,17 @@ Eigen::Vector3d TeethReading::vote(std::size_t point) const { return place(point
 TeethReading read_teeth(const TriangleMesh& scan, const ScanNetwork& network, int turns) {
   TeethReading reading;
   reading.frame = first_frame(scan);
-  ScanCloud& cloud = reading.cloud;
-  cloud = scan_points(scan, reading.frame).cloud;
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  for (int pass = 0; pass <= turns; ++pass) {
-    reading.frame.origin += reading.frame.rotation.transpose() * mean_place(cloud);
-    reading.frame.rotation = turn * reading.frame.rotation;
-    cloud = turned(cloud, turn);
-    reading.pyramid = scan_pyramid(cloud, network.shape());
+  reading.cloud = scan_points(scan, reading.frame).cloud;
+  move_origin_to_mean(reading.frame, reading.cloud);
+  // The points are chosen once: another choice for a slightly other turn would give slightly other borders.
+  reading.pyramid = scan_pyramid(reading.cloud, network.shape());
+  reading.said = network.read(reading.pyramid);
+  for (int pass = 0; pass < turns; ++pass) {
+    const Eigen::Matrix3d up = upright(reading.said);
+    reading.frame.rotation = up * reading.frame.rotation;
+    turn(up, reading.cloud);
+    turn(up, reading.pyramid);
     reading.said = network.read(reading.pyramid);
-    turn = in_steps(upright(reading.said));
-    if (turn.isIdentity()) break;
   }
   return reading;
 }

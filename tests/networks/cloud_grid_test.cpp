@@ -44,6 +44,19 @@ TEST(CloudGrid, ThinnedPointsLieNearTheMiddleOfTheirs) {
   EXPECT_EQ(thinned(xyz, 1), (std::vector<std::int32_t>{4, 1, 3}));
 }
 
+TEST(CloudGrid, RoundingDoesNotChooseWhichPointIsKept) {
+  // Two points to a cell: both are equally far from their middle.
+  std::vector<float> xyz;
+  for (int i = 0; i < 100; ++i) {
+    const auto at = static_cast<float>(i);
+    xyz.insert(xyz.end(), {at + 0.2F, 0.3F, 0.1F, at + 0.9F, 0.7F, 0.4F});
+  }
+  const std::vector<std::int32_t> chosen = thinned(xyz, 1);
+  RandomStream random(5);
+  for (float& x : xyz) x += static_cast<float>(random.uniform(-1e-5, 1e-5));
+  EXPECT_EQ(thinned(xyz, 1), chosen);
+}
+
 TEST(ScanPyramid, LevelsReferToEachOther) {
   ScanCloud cloud;
   cloud.positions = points(3000, 3, 12);

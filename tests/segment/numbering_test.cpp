@@ -80,8 +80,11 @@ TEST(Numbering, BelievesTheNetworkWherePremolarsWereTakenOutAndTheGapsClosed) {
   for (std::size_t i = 0; i < upper.size(); ++i) {
     const int number = upper[i] % 10;
     if (number < 5) continue;
-    // Each stands where the one before it would, and the network wavers between the two.
-    read[i].middle = tooth(upper[i] - 1).middle;
+    // All came forwards until 15 and 25 touched the canines, and the network wavers by one number.
+    const int quadrant = upper[i] / 10 * 10;
+    const Eigen::Vector3d gap = tooth(quadrant + 5).middle - tooth(quadrant + 3).middle;
+    const double contact = (tooth(quadrant + 5).middle - tooth(quadrant + 4).middle).norm();
+    read[i].middle -= (1 - contact / gap.norm()) * gap;
     const auto place = static_cast<std::size_t>(place_of_fdi(upper[i])),
                lower = static_cast<std::size_t>(place_of_fdi(upper[i] - 1));
     read[i].places.fill(0.05 / arch_place_count);

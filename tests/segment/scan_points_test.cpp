@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "segment/scan_points.hpp"
+
+#include "base/float_bits.hpp"
+#include "networks/cloud_grid.hpp"
+
+#include <Eigen/Geometry>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rhizodont {
+namespace {
+
+/// 30 mm x 20 mm of hills; with a flat base around them all if `closed`.
+TriangleMesh hills(bool closed) {
+  constexpr int columns = 61, rows = 41;
+  TriangleMesh mesh;
+  const auto add = [&](double height_of_hills, double depth, bool flipped) {
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (int j = 0; j < rows; ++j)
+      for (int i = 0; i < columns; ++i) {
+        const double x = 0.5 * i, y = 0.5 * j;
+        const bool rim = i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
+        const double z = rim ? 0 : height_of_hills * (2 + std::sin(0.9 * x + 0.2) * std::cos(0.7 * y)) - depth;
+        mesh.vertices.push_back(Point(x, y + 0.01 * x * x, z));
+      }
+    for (int j = 0; j + 1 < rows; ++j)
+      for (int i = 0; i + 1 < columns; ++i) {
+        const int v = first + columns * j + i;
+        for (const Triangle& t : {Triangle{v, v + 1, v + columns + 1}, Triangle{v, v + columns + 1, v + columns}})
+          mesh.triangles.push_back(flipped ? Triangle{t[0], t[2], t[1]} : t);
+      }
+  };
+  add(1.5, 0, false);
+  if (closed) add(0, 6, true);
+  return mesh;
+}
+
+/// Of points that are where no point of the others is.
+double share_without_fellow(const ScanLevel& level, const ScanLevel& others) {
+  const std::vector<std::int32_t> nearest = CloudGrid(others.positions, 1).nearest(level.positions, 1);
+  int without = 0;
+  for (std::size_t i = 0; i < level.size(); ++i)
+    for (std::size_t a = 0; a < 3; ++a)
+      if (std::abs(level.positions[3 * i + a] - others.positions[3 * static_cast<std::size_t>(nearest[i]) + a]) >
+          1e-3F) {
+        ++without;
+        break;
+      }
+  return without / static_cast<double>(level.size());
+}
+
+TEST(ScanPoints, TheSameOnesInAnyPose) {
+  for (const bool closed : {false, true}) {
+    SCOPED_TRACE(closed);
+    const TriangleMesh scan = hills(closed);
+    const ScanFrame frame = first_frame(scan);
+    const ScanPyramid pyramid = scan_pyramid(scan_points(scan, frame).cloud, {});
+    for (int pose = 1; pose < 5; ++pose) {
+      const Eigen::Matrix3d rotation =
+          Eigen::AngleAxisd(1.3 * pose, Eigen::Vector3d(1, -0.4 * pose, 0.7).normalized()).toRotationMatrix();
+      TriangleMesh moved = scan;
+      for (Point& p : moved.vertices) p = nearest_float(rotation * p + Point(120, -70, 30 * pose));
+      const ScanFrame again = first_frame(moved);
+      EXPECT_LT((again.rotation * rotation - frame.rotation).norm(), 1e-4);
+      const ScanPyramid its = scan_pyramid(scan_points(moved, again).cloud, {});
+      for (std::size_t l = 0; l < ScanShape::levels; ++l)
+        EXPECT_LT(share_without_fellow(its.levels[l], pyramid.levels[l]), 0.005) << "level " << l;
+    }
+  }
+}
+
+TEST(ScanPoints, TurnedOnesAreThoseOfATurnedFrame) {
+  const TriangleMesh scan = hills(false);
+  ScanFrame frame = first_frame(scan);
+  ScanCloud cloud = scan_points(scan, frame).cloud;
+  move_origin_to_mean(frame, cloud);
+  ScanPyramid pyramid = scan_pyramid(cloud, {});
+  const Eigen::Matrix3d rotation = Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.3, 1, 2).normalized()).toRotationMatrix();
+  turn(rotation, pyramid);
+  for (std::size_t i = 0; i < pyramid.levels[0].size(); ++i) {
+    const auto p = 3 * static_cast<std::size_t>(pyramid.levels[0].from[i]);
+    for (Eigen::Index a = 0; a < 3; ++a) {
+      const auto k = static_cast<std::size_t>(a);
+      const Eigen::Vector3f place(cloud.positions[p], cloud.positions[p + 1], cloud.positions[p + 2]);
+      const double is = (rotation * place.cast<double>())[a];
+      EXPECT_NEAR(static_cast<double>(pyramid.levels[0].positions[3 * i + k]), is, 1e-4);
+      EXPECT_NEAR(static_cast<double>(pyramid.features[scan_feature_count * i + k]), is / 25, 1e-5);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rhizodont
