@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Judges how scans without labels are read: judge_segmentation.sh [SCANS [MODELS [POSES]]]. SCANS (../shared/data/arches):
 # meshes with true labels SCAN.json beside them. Each is read as it lies and in POSES (0) random poses; figures of the first,
-# and the least share of faces that keep their labels in the others. For judging alone: nothing may be tuned by it.
+# and the least share of vertices that keep their labels in the others. For judging alone: nothing may be tuned by it.
 # RHIZODONT: the program (build/apps/rhizodont/rhizodont). OUT: a folder for the labels found (else a temporary one).
 set -eu
 cd "$(dirname "$0")/.."

@@ -3,7 +3,7 @@
 
 // How scans without labels are read: bench_segment time|pose MODELS SCAN... and bench_segment held-out MODELS DATA
 // COUNT [FIRST]. `time` reads each scan as it is and with each triangle in four until it has 200,000 triangles; `pose`
-// in five random poses, and says which share of vertices keeps its label at least; `held-out` generates scans that no
+// in five random poses, and says which share of triangles keeps its label at least; `held-out` generates scans that no
 // network was trained on and prints the figures of rhizodont evaluate --labels.
 #include "base/float_bits.hpp"
 #include "base/peak_memory.hpp"
@@ -11,6 +11,7 @@
 #include "common/timing.hpp"
 #include "evaluation/segmentation_figures.hpp"
 #include "families/arch_family.hpp"
+#include "io/scan_labels.hpp"
 #include "mesh/adjacency.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -63,7 +64,7 @@ void time_scan(const SegmentModels& models, const std::string& path) {
 
 void turn_scan(const SegmentModels& models, const std::string& path) {
   const TriangleMesh mesh = load_mesh(path).mesh;
-  const std::vector<int> labels = segment_scan(mesh, models).fdi;
+  const std::vector<int> first = triangle_labels_from_vertices(mesh, segment_scan(mesh, models).fdi);
   RandomStream random(1);
   double least = 1;
   for (int pose = 0; pose < 5; ++pose) {
@@ -73,14 +74,9 @@ void turn_scan(const SegmentModels& models, const std::string& path) {
     TriangleMesh turned = mesh;
     for (Point& p : turned.vertices) p = nearest_float(turn * p + shift);
     const std::vector<int> again = segment_scan(turned, models).fdi;
+    const std::vector<int> faces = triangle_labels_from_vertices(mesh, again);
     std::size_t same = 0;
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-      same += std::all_of(mesh.triangles[t].begin(), mesh.triangles[t].end(),
-                          [&](std::int32_t v) {
-                            return labels[static_cast<std::size_t>(v)] == again[static_cast<std::size_t>(v)];
-                          })
-                  ? 1
-                  : 0;
+    for (std::size_t t = 0; t < faces.size(); ++t) same += faces[t] == first[t] ? 1 : 0;
     least = std::min(least, static_cast<double>(same) / static_cast<double>(mesh.triangles.size()));
   }
   fmt::print("| {} | {:.4f} |\n", path, least);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evaluation/segmentation_figures.hpp"
 
+#include "io/scan_labels.hpp"
 #include "rhizodont/error.hpp"
 
 #include <fmt/format.h>
@@ -126,14 +127,17 @@ SegmentationFigures segmentation_figures(const TriangleMesh& scan, const std::ve
     if (truth[v] != 0 && found[v] != 0) ++common[{truth[v], found[v]}];
   }
   figures.tsa = share(tooth_or_gum, n);
-  std::size_t right = 0;
-  for (const Triangle& t : scan.triangles)
-    right +=
-        std::all_of(t.begin(), t.end(),
-                    [&](int v) { return truth[static_cast<std::size_t>(v)] == found[static_cast<std::size_t>(v)]; })
-            ? 1
-            : 0;
-  figures.faces_right = share(right, scan.triangles.size());
+  const std::vector<int> faces = triangle_labels_from_vertices(scan, truth),
+                         said_faces = triangle_labels_from_vertices(scan, found);
+  std::size_t right = 0, wholly = 0;
+  for (std::size_t t = 0; t < faces.size(); ++t) {
+    right += faces[t] == said_faces[t] ? 1 : 0;
+    wholly += std::all_of(scan.triangles[t].begin(), scan.triangles[t].end(), [&](int v) {
+      return truth[static_cast<std::size_t>(v)] == found[static_cast<std::size_t>(v)];
+    });
+  }
+  figures.faces_right = share(right, faces.size());
+  figures.faces_wholly_right = share(wholly, faces.size());
   const auto teeth = labelled(scan, truth), said = labelled(scan, found);
   compare_teeth(teeth, said, common, figures);
   compare_places(teeth, said, figures);
@@ -153,6 +157,7 @@ SegmentationSummary summary_of(const std::vector<SegmentationFigures>& scans) {
     sum.tla += each * f.tla;
     sum.tir += each * f.tir;
     sum.faces_right += each * f.faces_right;
+    sum.faces_wholly_right += each * f.faces_wholly_right;
     for (const FoundToothFigures& tooth : f.teeth) {
       ++sum.teeth;
       sum.right += tooth.is_right() ? 1 : 0;
@@ -171,10 +176,10 @@ std::string describe(const SegmentationSummary& s) {
   std::string text = fmt::format(
       "{} scans: TSA {:.4f}  TLA {:.4f}  TIR {:.4f}  mean {:.4f}\n"
       "strict: {} of {} teeth right ({:.4f}), {} found under any number ({:.4f}), {} extra; mean IoU {:.4f}\n"
-      "faces right {:.4f}; jaw right {} of {}; scans without error {} of {}\n",
+      "faces right {:.4f} (at all three corners {:.4f}); jaw right {} of {}; scans without error {} of {}\n",
       s.scans, s.tsa, s.tla, s.tir, (s.tsa + s.tla + s.tir) / 3, s.right, s.teeth, share(s.right, s.teeth), s.located,
-      share(s.located, s.teeth), s.extra, s.mean_overlap, s.faces_right, s.jaws_right, s.scans, s.without_error,
-      s.scans);
+      share(s.located, s.teeth), s.extra, s.mean_overlap, s.faces_right, s.faces_wholly_right, s.jaws_right, s.scans,
+      s.without_error, s.scans);
   text += "by place from the middle:";
   for (const auto& [type, counts] : s.by_type) text += fmt::format("  {}: {}/{}", type, counts.second, counts.first);
   return text + "\n";

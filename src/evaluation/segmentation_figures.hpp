@@ -34,8 +34,10 @@ struct SegmentationFigures {
 
   std::vector<FoundToothFigures> teeth;  ///< true ones, by number
   std::vector<int> extra;                ///< numbers of found teeth that overlap no true one by more than half
-  double faces_right = 0;                ///< share of triangles all of whose corners are right
-  bool jaw_right = false;                ///< most labelled vertices are of the right jaw
+  /// Share of triangles that are rightly labelled, as `triangle_labels_from_vertices` labels them, and of those all of
+  /// whose corners are.
+  double faces_right = 0, faces_wholly_right = 0;
+  bool jaw_right = false;  ///< most labelled vertices are of the right jaw
 
   std::size_t right() const;
   bool is_without_error() const { return right() == teeth.size() && extra.empty(); }
@@ -51,8 +53,9 @@ SegmentationFigures segmentation_figures(const TriangleMesh& scan, const std::ve
 struct SegmentationSummary {
   std::size_t scans = 0, without_error = 0, jaws_right = 0;
   std::size_t teeth = 0, right = 0, located = 0, extra = 0;
-  double tsa = 0, tla = 0, tir = 0, faces_right = 0, mean_overlap = 0;  ///< means over scans; overlap over teeth
-  std::map<int, std::pair<std::size_t, std::size_t>> by_type;           ///< 1..8: how many teeth, and how many right
+  double tsa = 0, tla = 0, tir = 0, faces_right = 0, faces_wholly_right = 0;  ///< means over scans
+  double mean_overlap = 0;                                                    ///< over teeth
+  std::map<int, std::pair<std::size_t, std::size_t>> by_type;  ///< 1..8: how many teeth, and how many right
 };
 
 SegmentationSummary summary_of(const std::vector<SegmentationFigures>& scans);

@@ -26,6 +26,7 @@ TEST(SegmentationFigures, OfTheTruthAreOne) {
   EXPECT_EQ(f.tla, 1);
   EXPECT_EQ(f.tir, 1);
   EXPECT_EQ(f.faces_right, 1);
+  EXPECT_EQ(f.faces_wholly_right, 1);
   EXPECT_TRUE(f.is_without_error());
   EXPECT_TRUE(f.jaw_right);
   EXPECT_EQ(f.mean_overlap(), 1);
@@ -47,8 +48,10 @@ TEST(SegmentationFigures, CountedByHand) {
   // neither counts as found, which costs 5 each.
   EXPECT_EQ(f.tir, 0);
   EXPECT_NEAR(f.tla, std::exp(-5), 1e-12);
-  // None of the six triangles: each has vertex 2, 4 or one of those called 22 instead of 21.
-  EXPECT_DOUBLE_EQ(f.faces_right, 0);
+  // Each of the six triangles has vertex 2, 4 or one of those called 22 instead of 21; most corners of 0 1 2 are
+  // rightly 11, and of 2 3 4 rightly gum.
+  EXPECT_DOUBLE_EQ(f.faces_wholly_right, 0);
+  EXPECT_DOUBLE_EQ(f.faces_right, 2.0 / 6);
   const SegmentationSummary sum = summary_of({f, segmentation_figures(strip(), truth, truth)});
   EXPECT_EQ(sum.teeth, 4U);
   EXPECT_EQ(sum.right, 3U);
