@@ -1,8 +1,11 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/tooth_labels.hpp"
 #include "command_line/output_checks.hpp"
 #include "commands.hpp"
 #include "pictures/render.hpp"
+#include "pictures/tiles.hpp"
+#include "pictures/tooth_colours.hpp"
 #include "pictures/upward.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -21,18 +24,23 @@ struct RenderCommand {
   std::vector<double> axis;
   std::string colour_by = "auto";
   RenderOptions options;
+  std::size_t per_row = 1;
 };
 
 std::vector<Colour> colours_of(const MeshFile& file, const std::string& colour_by, const std::string& path) {
   const auto& attributes = file.vertex_attributes;
   if (colour_by == "none") return {plain_colour()};
-  if (colour_by == "auto" && !attributes.contains(source_attribute)) return {plain_colour()};
-  const std::string name = colour_by == "auto" ? source_attribute : colour_by;
+  std::string name = colour_by;
+  if (colour_by == "auto") {
+    name = attributes.contains(source_attribute) ? source_attribute : fdi_attribute;
+    if (!attributes.contains(name)) return {plain_colour()};
+  }
   const auto place = attributes.find(name);
   if (place == attributes.end())
     throw UsageError(fmt::format("{}: there is no attribute '{}' to colour by", path, name));
-  return name == source_attribute ? colours_by_source(file.mesh, place->second.values)
-                                  : colours_by_value(file.mesh, place->second.values);
+  const std::vector<double>& values = place->second.values;
+  if (name == source_attribute) return colours_by_source(file.mesh, values);
+  return name == fdi_attribute ? colours_by_tooth(file.mesh, values) : colours_by_value(file.mesh, values);
 }
 
 void run(const RenderCommand& command) {
@@ -46,7 +54,9 @@ void run(const RenderCommand& command) {
     if (command.axis.size() == 3) item.up = Eigen::Vector3d(command.axis[0], command.axis[1], command.axis[2]);
     items.push_back(std::move(item));
   }
-  write_output_files({{command.output, encode_png(render(items, command.options))}});
+  Image picture = render(items, command.options);
+  if (command.per_row > 1) picture = side_by_side(picture, items.size(), command.per_row);
+  write_output_files({{command.output, encode_png(picture)}});
 }
 
 }  // namespace
@@ -69,10 +79,14 @@ void add_render_command(CLI::App& app) {
                    "Direction from root to crown, x,y,z (default: from an open crown's border, or z)")
       ->delimiter(',')
       ->expected(3);
+  render_app->add_option("--per-row", command->per_row, "Meshes side by side in a row of the picture")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
   render_app->add_flag("--wireframe", command->options.wireframe, "Draw the edges of the triangles");
   render_app
       ->add_option("--color-by", command->colour_by,
-                   "source, another attribute of a PLY file, none, or auto: source if there is one")
+                   "source, fdi (numbers of teeth), another attribute of a PLY file, none, or auto: source or fdi if "
+                   "there is one")
       ->capture_default_str();
   render_app->callback([command] { run(*command); });
 }

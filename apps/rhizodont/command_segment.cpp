@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "base/tooth_labels.hpp"
 #include "command_line/output_checks.hpp"
 #include "commands.hpp"
 #include "io/scan_labels.hpp"
@@ -35,13 +36,19 @@ struct SegmentCommand {
 std::string label_bytes(const SegmentCommand& command, const MeshFile& scan, const SegmentedScan& found) {
   const std::string ending = std::filesystem::path(command.output).extension().string();
   if (ending == ".json") return teeth3ds_json(found.fdi, found.jaw, scan);
+  if (ending == ".ply") {
+    MeshFile labelled;
+    labelled.mesh = scan.mesh;
+    labelled.vertex_attributes[fdi_attribute] = {AttributeType::uint8, {found.fdi.begin(), found.fdi.end()}};
+    return mesh_file_bytes(command.output, labelled);
+  }
   const std::vector<int> numbers = numbered_as(found.fdi, command.numbers);
   if (ending == ".vtp") return vtp_with_cell_labels(scan.mesh, triangle_labels_from_vertices(scan.mesh, numbers));
   return vtk_with_point_labels(scan.mesh, numbered_as(found.fdi, LabelNumbers::universal));
 }
 
 void run(SegmentCommand& command) {
-  require_ending(command.output, {".json", ".vtp", ".vtk"}, "labels of a scan");
+  require_ending(command.output, {".json", ".ply", ".vtp", ".vtk"}, "labels of a scan");
   const std::filesystem::path models =
       command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
   std::vector<std::filesystem::path> inputs{command.scan};
@@ -69,7 +76,8 @@ void add_segment_command(CLI::App& app) {
   segment->add_option("SCAN", command->scan, "Scan of one jaw: .stl .ply .obj .off .vtp .vtk")->required();
   segment
       ->add_option("-o,--output", command->output,
-                   "Labels: .json (Teeth3DS, FDI), .vtp (cell array Label), .vtk (point array Universal_ID)")
+                   "Labels: .json (Teeth3DS, FDI), .ply (attribute fdi), .vtp (cell array Label), .vtk (point array "
+                   "Universal_ID)")
       ->required();
   command->teeth.add_to(*segment);
   segment->add_option_function<std::string>(

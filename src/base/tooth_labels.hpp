@@ -14,4 +14,7 @@ enum class LabelNumbers {
   arch16,     ///< 1-16 along the arch, wisdom tooth to wisdom tooth
 };
 
+/// Vertex attribute with numbers of teeth: FDI, 0 for gum.
+inline constexpr const char* fdi_attribute = "fdi";
+
 }  // namespace rhizodont

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/arch_files.hpp"
 
+#include "base/tooth_labels.hpp"
 #include "io/scan_labels.hpp"
 #include "io/scene.hpp"
 #include "io/write_labels.hpp"
 #include "mesh/append_mesh.hpp"
 #include "pictures/render.hpp"
+#include "pictures/tooth_colours.hpp"
 #include "report/json.hpp"
 #include "rhizodont/report.hpp"
 #include "rhizodont/tooth_file.hpp"
@@ -65,7 +67,7 @@ MeshFile arch_in_one(const CompletedArch& arch) {
     for (const double u : tooth.tooth->uncertainty) uncertainty.values.push_back(static_cast<float>(u));
     for (const double c : tooth.clearance) clearance.values.push_back(static_cast<float>(c));
   }
-  file.vertex_attributes = {{"fdi", std::move(fdi)},
+  file.vertex_attributes = {{fdi_attribute, std::move(fdi)},
                             {source_attribute, std::move(source)},
                             {"uncertainty", std::move(uncertainty)},
                             {"clearance", std::move(clearance)}};
@@ -75,18 +77,12 @@ MeshFile arch_in_one(const CompletedArch& arch) {
   return file;
 }
 
-/// Neighbours apart from each other, left and right alike.
-std::array<float, 3> colour_of(int fdi) {
-  constexpr std::array<std::array<float, 3>, 4> colours{
-      {{0.80F, 0.62F, 0.36F}, {0.45F, 0.62F, 0.72F}, {0.62F, 0.70F, 0.42F}, {0.76F, 0.50F, 0.46F}}};
-  return colours[static_cast<std::size_t>(fdi % 10) % colours.size()];
-}
-
 std::string scene_of(const CompletedArch& arch, double millimetres_per_unit) {
   std::vector<SceneNode> nodes;
   for (const ToothOfArch& tooth : arch.teeth)
-    if (tooth.tooth) nodes.push_back({fmt::format("tooth {}", tooth.fdi), &tooth.tooth->mesh, colour_of(tooth.fdi)});
-  if (!arch.gum.triangles.empty()) nodes.push_back({"gum", &arch.gum, {0.72F, 0.38F, 0.36F}});
+    if (tooth.tooth)
+      nodes.push_back({fmt::format("tooth {}", tooth.fdi), &tooth.tooth->mesh, colour_of_tooth(tooth.fdi)});
+  if (!arch.gum.triangles.empty()) nodes.push_back({"gum", &arch.gum, colour_of_tooth(0)});
   return scene_bytes(nodes, millimetres_per_unit);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pictures/render.hpp"
 #include "pictures/tiles.hpp"
+#include "pictures/tooth_colours.hpp"
 #include "pictures/upward.hpp"
 
 #include "mesh/test_meshes.hpp"
@@ -166,6 +167,19 @@ TEST(Render, ColoursBySourceAndValue) {
   EXPECT_EQ(colours_by_value(mesh, {1, 1, 1, 1})[0], colours_by_value(mesh, {1, 1, 1, 1})[1]);
   EXPECT_THROW(colours_by_source(mesh, {0}), InputError);
   EXPECT_THROW(colours_by_value(mesh, {0}), InputError);
+}
+
+TEST(Render, TeethHaveOtherColoursThanTheirNeighboursAndGum) {
+  const std::vector<int> upper{18, 17, 16, 15, 14, 13, 12, 11, 21, 22, 23, 24, 25, 26, 27, 28};
+  for (std::size_t i = 0; i < upper.size(); ++i) {
+    EXPECT_NE(colour_of_tooth(upper[i]), colour_of_tooth(0));
+    if (i > 0) EXPECT_NE(colour_of_tooth(upper[i]), colour_of_tooth(upper[i - 1])) << upper[i];
+  }
+  const TriangleMesh mesh = grid(1);  // triangles 0 1 3, 0 3 2
+  const std::vector<Colour> colours = colours_by_tooth(mesh, {36, 36, 0, 0});
+  EXPECT_EQ(colours[0], colour_of_tooth(36));
+  EXPECT_EQ(colours[1], colour_of_tooth(0));
+  EXPECT_THROW(colours_by_tooth(mesh, {36}), InputError);
 }
 
 TEST(Render, BadInputIsRefused) {

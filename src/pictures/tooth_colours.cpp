@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: Rhizodont contributors
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pictures/tooth_colours.hpp"
+
+#include "io/scan_labels.hpp"
+#include "rhizodont/error.hpp"
+#include "teeth/fdi.hpp"
+
+#include <array>
+#include <cstddef>
+
+namespace rhizodont {
+
+Colour colour_of_tooth(int fdi) {
+  constexpr std::array<Colour, 4> colours{
+      {{0.80F, 0.62F, 0.36F}, {0.45F, 0.62F, 0.72F}, {0.62F, 0.70F, 0.42F}, {0.76F, 0.50F, 0.46F}}};
+  constexpr Colour gum{0.72F, 0.38F, 0.36F};
+  if (fdi <= 0) return gum;
+  const int from_middle = fdi % 10 + (is_right_side(fdi) ? 0 : 2);  // the two central incisors are neighbours, too
+  return colours[static_cast<std::size_t>(from_middle) % colours.size()];
+}
+
+std::vector<Colour> colours_by_tooth(const TriangleMesh& mesh, const std::vector<double>& fdi) {
+  if (fdi.size() != mesh.vertices.size()) throw InputError("a colour by tooth needs one number per vertex");
+  std::vector<Colour> chosen;
+  for (const int number : triangle_labels_from_vertices(mesh, std::vector<int>(fdi.begin(), fdi.end())))
+    chosen.push_back(colour_of_tooth(number));
+  return chosen;
+}
+
+}  // namespace rhizodont
