@@ -13,7 +13,7 @@ namespace rhizodont {
 
 Colour colour_of_tooth(int fdi) {
   constexpr std::array<Colour, 4> colours{
-      {{0.80F, 0.62F, 0.36F}, {0.45F, 0.62F, 0.72F}, {0.62F, 0.70F, 0.42F}, {0.76F, 0.50F, 0.46F}}};
+      {{0.80F, 0.62F, 0.36F}, {0.45F, 0.62F, 0.72F}, {0.62F, 0.70F, 0.42F}, {0.60F, 0.50F, 0.70F}}};
   constexpr Colour gum{0.72F, 0.38F, 0.36F};
   if (fdi <= 0) return gum;
   const int from_middle = fdi % 10 + (is_right_side(fdi) ? 0 : 2);  // the two central incisors are neighbours, too
