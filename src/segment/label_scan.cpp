@@ -145,6 +145,15 @@ void require_arch(const std::vector<ToothNumber>& teeth) {
     throw InputError(
         fmt::format("Only {} {} found: this is no scan of an arch of teeth. A single crown goes to complete.",
                     teeth.size(), teeth.size() == 1 ? "tooth was" : "teeth were"));
+  // A surface of knobs has some teeth, too, but no numbers: those of arches are sure to 70 % and more in the mean.
+  constexpr double least_sure = 0.4;
+  double sure = 0;
+  for (const ToothNumber& tooth : teeth) sure += tooth.probability / static_cast<double>(teeth.size());
+  if (sure < least_sure)
+    throw InputError(fmt::format(
+        "{} shapes like teeth were found, but not in the order of an arch (their numbers are sure to {:.0f} % in the "
+        "mean): this is no scan of an arch of teeth.",
+        teeth.size(), 100 * sure));
 }
 
 void describe_teeth(const TriangleMesh& scan, const std::vector<ToothNumber>& numbers, double millimetres_per_unit,
