@@ -171,10 +171,9 @@ TEST(Render, ColoursBySourceAndValue) {
 
 TEST(Render, TeethHaveOtherColoursThanTheirNeighboursAndGum) {
   const std::vector<int> upper{18, 17, 16, 15, 14, 13, 12, 11, 21, 22, 23, 24, 25, 26, 27, 28};
-  for (std::size_t i = 0; i < upper.size(); ++i) {
-    EXPECT_NE(colour_of_tooth(upper[i]), colour_of_tooth(0));
-    if (i > 0) EXPECT_NE(colour_of_tooth(upper[i]), colour_of_tooth(upper[i - 1])) << upper[i];
-  }
+  for (const int fdi : upper) EXPECT_NE(colour_of_tooth(fdi), colour_of_tooth(0));
+  for (std::size_t i = 1; i < upper.size(); ++i)
+    EXPECT_NE(colour_of_tooth(upper[i]), colour_of_tooth(upper[i - 1])) << upper[i];
   const TriangleMesh mesh = grid(1);  // triangles 0 1 3, 0 3 2
   const std::vector<Colour> colours = colours_by_tooth(mesh, {36, 36, 0, 0});
   EXPECT_EQ(colours[0], colour_of_tooth(36));
