@@ -17,7 +17,8 @@ namespace rhizodont {
 
 struct FuseOptions {
   double edge_growth = 0.9;  ///< > 0: how fast edges grow with the distance from a short border edge
-  /// Tried in turn where new triangles have angles below the transition's bounds; the best tooth is taken.
+  /// Tried in turn where new triangles have angles below the transition's bounds, until two give the same worst angle;
+  /// the best tooth is taken.
   std::vector<double> other_growths{0.75, 0.6, 1.2, 0.5};
   double edge_shrinkage = 0.15;  ///< > 0: how fast they shrink from a long one
   SeparationOptions separation;
