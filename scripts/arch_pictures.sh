@@ -25,9 +25,10 @@ meshes=()
 for i in "${!scans[@]}"; do
   # Without the labels that may lie beside it.
   mkdir "$folder/$i"
-  cp "${scans[$i]}" "$folder/$i/scan.ply"
-  "$program" segment "$folder/$i/scan.ply" -o "$folder/$i/labels.ply" --quiet
-  "$program" arch "$folder/$i/scan.ply" -o "$folder/$i/arch" --quiet || [ $? = 6 ]
-  meshes+=("$folder/$i/scan.ply" "$folder/$i/labels.ply" "$folder/$i/arch/arch.ply")
+  scan=$folder/$i/$(basename "${scans[$i]}")
+  cp "${scans[$i]}" "$scan"
+  "$program" segment "$scan" -o "$folder/$i/labels.ply" --quiet
+  "$program" arch "$scan" -o "$folder/$i/arch" --quiet || [ $? = 6 ]
+  meshes+=("$scan" "$folder/$i/labels.ply" "$folder/$i/arch/arch.ply")
 done
 "$program" render "${meshes[@]}" -o "$out" --per-row 3 --views oblique --width 520 --height 420

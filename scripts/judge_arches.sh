@@ -3,12 +3,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 # Completes every arch of real data with --resolve-collisions and proves each tooth against its cut crown: a row an arch, how
-# many teeth have roots, how many of those `rhizodont check` confirms, which pairs of roots still run into each other, and
+# many teeth have roots, how many of those `rhizodont check` confirms, which roots still run into a neighbour, and
 # each refusal with its reason.
 # usage: judge_arches.sh [DATA=../shared/data]
 # Of DATA: arches/*.ply with labels beside them, crowns/patient* (both jaws, a crown a file), lower_scan. Needs a built
 # program (BUILD=build). OUT: keeps the results there. OPTIONS: more for rhizodont arch.
 set -euo pipefail
+shopt -s nullglob
 cd "$(dirname "$0")/.."
 data=$(realpath "${1:-../shared/data}")
 program=$(realpath "${BUILD:-build}/apps/rhizodont/rhizodont")
@@ -30,11 +31,14 @@ mkdir -p "$out/in/lower_scan"
 for crown in "$data"/lower_scan/crown_??.ply; do ln -sf "$crown" "$out/in/lower_scan/"; done
 inputs+=("$out/in/lower_scan")
 
-echo "| arch | teeth | with roots | checked | roots in each other |"
+echo "| arch | teeth | with roots | checked | roots in a neighbour |"
 echo "|---|---|---|---|---|"
 for input in "${inputs[@]}"; do
   name=$(basename "$input" .ply)
-  "$program" arch "$input" -o "$out/$name" --resolve-collisions --overwrite --quiet "${options[@]}" || [ $? = 6 ]
+  rm -rf "${out:?}/$name"
+  code=0
+  "$program" arch "$input" -o "$out/$name" --resolve-collisions --quiet "${options[@]}" || code=$?
+  [ $code = 0 ] || [ $code = 4 ] || [ $code = 6 ] || { echo "$name: rhizodont arch ended with $code" >&2; exit 1; }
   checked=0
   for tooth in "$out/$name"/tooth_??.ply; do
     fdi=${tooth: -6:2}
@@ -61,5 +65,6 @@ for t in teeth:
 PY
 done | tee "$out/table.txt"
 awk -F'|' '{ teeth += $3; rooted += $4; checked += $5; pairs += gsub(/ mm/, " mm", $6) }
-  END { printf "%d teeth, %d with roots, %d of those checked, %d pairs of roots in each other\n", teeth, rooted, checked, pairs }' \
+  END { printf "%d teeth, %d with roots, %d of those checked, %d roots in a neighbour\n", teeth, rooted, checked, pairs
+    exit checked < rooted }' \
   "$out/table.txt"

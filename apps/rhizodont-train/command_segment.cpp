@@ -21,6 +21,7 @@ struct SegmentCommand {
   bool overwrite = false;
   std::uint64_t make = 0, first = 0;
   bool make_held_out = false;
+  ArchDrawOptions draw;
   ScanTrainingOptions options;
 };
 
@@ -30,7 +31,7 @@ void make_samples(const SegmentCommand& command) {
   for (std::uint64_t i = command.first; i < command.first + command.make; ++i) {
     const std::uint64_t seed = i + (command.make_held_out ? first_validation_sample : 0);
     try {
-      const LabelledCloud scan = kept_arch_cloud(family, seed, command.cache);
+      const LabelledCloud scan = kept_arch_cloud(family, seed, command.cache, command.draw);
       fmt::print("{}: {} points\n", seed, scan.cloud.size());
     } catch (const NoResultError& error) {
       fmt::print("{}: {}\n", seed, error.what());
@@ -87,6 +88,8 @@ void add_segment_command(CLI::App& app) {
   add_training_options(*train_app, command->options);
   train_app->add_option("--make", command->make, "Train nothing: put so many scans into the cache");
   train_app->add_option("--first", command->first, "Number of the first one to make")->capture_default_str();
+  train_app->add_option("--milk-share", command->draw.milk_share, "Of those made: the share with milk teeth, 0 to 1")
+      ->capture_default_str();
   train_app->add_flag("--make-held-out", command->make_held_out, "Make those that validation takes");
   auto* export_to = train_app->add_option(
       "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");

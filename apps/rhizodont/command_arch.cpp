@@ -72,15 +72,6 @@ void print_summary(const CompletedArch& arch) {
   }
 }
 
-/// Teeth of a scan without labels.
-SegmentedScan found_teeth(const TriangleMesh& scan, const ArchCommand& command, const SegmentModels& models) {
-  SegmentOptions options;
-  options.millimetres_per_unit = command.options.tooth.millimetres_per_unit;
-  options.jaw = command.source.jaw;
-  options.threads = command.options.tooth.threads;
-  return segment_scan(scan, models, options);
-}
-
 void run(ArchCommand& command) {
   for (const std::string& length : command.lengths) add_length(length, command.options.root_lengths);
   const std::filesystem::path models =
@@ -95,8 +86,9 @@ void run(ArchCommand& command) {
   for (const std::filesystem::path& file : model_files(models)) inputs.push_back(file);
   if (SegmentModels::are_in(models)) {
     for (const std::filesystem::path& file : segment_model_files(models)) inputs.push_back(file);
-    command.source.find = [&](const TriangleMesh& scan) {
-      return found_teeth(scan, command, SegmentModels::load(models));
+    command.source.find = [&](const TriangleMesh& scan, SegmentOptions search) {
+      search.threads = command.options.tooth.threads;
+      return segment_scan(scan, SegmentModels::load(models), search);
     };
   }
   ScanInput input = read_scan(command.scan, command.source, command.options.tooth.millimetres_per_unit);
@@ -135,7 +127,7 @@ void add_label_options(CLI::App& arch, const std::shared_ptr<ArchCommand>& comma
   arch.add_option_function<std::string>(
           "--jaw",
           [command](const std::string& word) { command->source.jaw = word == "upper" ? Jaw::upper : Jaw::lower; },
-          "upper or lower, where numbers run along the arch")
+          "upper or lower, where numbers run along the arch or teeth are to be found")
       ->check(CLI::IsMember({"upper", "lower"}));
   arch.add_option_function<std::string>(
           "--first-label",
@@ -151,9 +143,9 @@ void add_label_options(CLI::App& arch, const std::shared_ptr<ArchCommand>& comma
 
 void add_arch_command(CLI::App& app) {
   auto command = std::make_shared<ArchCommand>();
-  CLI::App* arch = app.add_subcommand("arch", "Every tooth of a labelled scan with its root");
+  CLI::App* arch = app.add_subcommand("arch", "Every tooth of a scan with its root");
   arch->add_option("SCAN", command->scan,
-                   "Scan whose teeth are labelled, or a folder of crowns with their numbers in their names")
+                   "Scan, its teeth labelled or to be found, or a folder of crowns with their numbers in their names")
       ->required();
   arch->add_option("-o,--output", command->output, "Folder for the teeth, reports, scene and picture")->required();
   add_label_options(*arch, command);

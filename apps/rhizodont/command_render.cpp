@@ -12,6 +12,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <memory>
 #include <string>
 
@@ -55,7 +56,8 @@ void run(const RenderCommand& command) {
     items.push_back(std::move(item));
   }
   Image picture = render(items, command.options);
-  if (command.per_row > 1) picture = side_by_side(picture, items.size(), command.per_row);
+  const std::size_t per_row = std::min(command.per_row, items.size());
+  if (per_row > 1) picture = side_by_side(picture, items.size(), per_row);
   write_output_files({{command.output, encode_png(picture)}});
 }
 

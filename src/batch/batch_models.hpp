@@ -14,8 +14,9 @@ namespace rhizodont {
 /// What all cases of a batch are completed with, loaded once.
 struct BatchModels {
   CompletionModels completion;
+  std::string completion_sha256;        ///< of its files with their names: goes into every key
   std::optional<SegmentModels> finder;  ///< nothing: scans without labels are refused
-  std::string sha256;                   ///< of the files with their names: goes into every key
+  std::string finder_sha256;            ///< goes into the keys of scans that may have no labels; empty: no finder
 };
 
 /// Loads them from a folder; the network that finds teeth only if it is there. Throws InputError as

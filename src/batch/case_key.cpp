@@ -86,7 +86,7 @@ std::vector<fs::path> files_of_case(const BatchCase& one) {
   return files;
 }
 
-CaseKey key_of_case(const BatchCase& one, const CaseOptions& options, const std::string& models) {
+CaseKey key_of_case(const BatchCase& one, const CaseOptions& options, const BatchModels& models) {
   const bool of_folder = is_folder(one.scan);
   CaseKey result;
   Json files = Json::array();
@@ -102,10 +102,13 @@ CaseKey key_of_case(const BatchCase& one, const CaseOptions& options, const std:
   }
   Json json{{"layout", layout_of_results},
             {"version", RHIZODONT_VERSION},
-            {"models", models},
+            {"models", models.completion_sha256},
             {"options", options_json(options, one.is_crown)},
             {"case", line_json(one)},
             {"files", files}};
+  // A scan with labels of its own has them in its file: that is not looked into here.
+  const bool may_lack_labels = !one.is_crown && !of_folder && files.size() == 1 && one.labels.array.empty();
+  if (may_lack_labels && !models.finder_sha256.empty()) json["finder"] = models.finder_sha256;
   if (options.keep_names) json["name"] = one.scan.filename().string();
   constexpr std::size_t digits = 32;
   result.key = sha256_of_bytes(json.dump(-1, ' ', false, Json::error_handler_t::replace)).substr(0, digits);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "batch/batch_models.hpp"
 #include "batch/manifest.hpp"
 #include "batch/shard.hpp"
 #include "report/arch_files.hpp"
@@ -30,8 +31,8 @@ struct CaseKey {
 
 /// A hash of all that the results depend on: the bytes of the case's files, their formats by name and the teeth in
 /// their names, the case's line, options, models, and the program's version; neither names nor places. Throws
-/// InputError if a file cannot be read. @param models  BatchModels::sha256
-CaseKey key_of_case(const BatchCase& one, const CaseOptions& options, const std::string& models);
+/// InputError if a file cannot be read.
+CaseKey key_of_case(const BatchCase& one, const CaseOptions& options, const BatchModels& models);
 
 /// The options' part of it, for crowns or scans as `one` is.
 std::string text_of_options(const BatchCase& one, const CaseOptions& options);

@@ -64,12 +64,9 @@ BatchOutcome complete_scan(const BatchCase& one, const CaseKey& key, const Batch
   if (one.millimetres_per_unit) arch_options.tooth.millimetres_per_unit = *one.millimetres_per_unit;
   ScanLabelSource labels = one.labels;
   if (models.finder)
-    labels.find = [&](const TriangleMesh& scan) {
+    labels.find = [&](const TriangleMesh& scan, const SegmentOptions& search) {
       go_on();
-      SegmentOptions found;
-      found.millimetres_per_unit = arch_options.tooth.millimetres_per_unit;
-      found.jaw = one.labels.jaw;
-      return segment_scan(scan, *models.finder, found);
+      return segment_scan(scan, *models.finder, search);
     };
   ScanInput input = read_scan(one.scan, labels, arch_options.tooth.millimetres_per_unit);
   require_same(input.sha256, key);

@@ -97,7 +97,7 @@ class ShardRun {
 
   void write_beginning() {
     // Whatever gives the same keys is the same batch.
-    std::string all = manifest_.sha256 + models_.sha256 + RHIZODONT_VERSION;
+    std::string all = manifest_.sha256 + models_.completion_sha256 + models_.finder_sha256 + RHIZODONT_VERSION;
     BatchCase scan, crown;
     crown.is_crown = true;
     for (const BatchCase& kind : {scan, crown}) all += text_of_options(kind, options_.cases);
@@ -120,7 +120,7 @@ class ShardRun {
     go_on();
     CaseKey key;
     try {
-      key = key_of_case(one, options_.cases, models_.sha256);
+      key = key_of_case(one, options_.cases, models_);
     } catch (const InputError& error) {
       BatchOutcome unreadable;
       unreadable.code = static_cast<int>(error.code());

@@ -47,7 +47,7 @@ struct ArchDrawOptions {
   double missing_share = 0.4;     ///< arches that lack one tooth or several (other than wisdom teeth)
   double wisdom_share = 0.2;      ///< arches with one wisdom tooth or both
   double partial_share = 0.1;     ///< scans of a part of the arch
-  double milk_share = 0.04;       ///< arches with milk teeth among the others
+  double milk_share = 0.12;       ///< arches with milk teeth among the others: orthodontists see many children
   double wear_share = 0.4;        ///< people with worn crowns
   double stump_share = 0.05;      ///< arches with a tooth or some ground down for restorations
   double bracket_share = 0.08;    ///< arches with brackets or attachments

@@ -221,16 +221,16 @@ FusedTooth fuse_crown_and_root(const PreparedCrown& crown, const TriangleMesh& g
   Ground ground(crown, guiding_surface, growth_axis, options);
   spent.separation += watch.restart();
   FusedTooth best = fuse_on(ground, options, spent);
-  double share = least_angle_share(best.tooth, options.transition), before = share;
+  double share = least_angle_share(best.tooth, options.transition), last_share = share;
   for (const double growth : options.other_growths) {
     if (share >= 1) break;
     ground.lengths = ground.edge_lengths(growth, options);
     try {
       FusedTooth other = fuse_on(ground, options, spent);
       const double others = least_angle_share(other.tooth, options.transition);
-      // The same triangle again: what makes it is the crown, not how edges grow.
-      if (others == before) break;
-      before = others;
+      // To the last bit the same: that triangle does not hang on how edges grow.
+      if (others == last_share) break;
+      last_share = others;
       if (others <= share) continue;
       share = others;
       best = std::move(other);

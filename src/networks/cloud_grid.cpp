@@ -122,21 +122,19 @@ std::vector<std::int32_t> thinned(std::span<const float> xyz, float spacing) {
       for (std::size_t a = 0; a < 3; ++a) mean[a] += xyz[3 * static_cast<std::size_t>(places[end].point) + a];
     // Two points are equally far from their mean: rounding must not choose between them.
     const float alike = 1e-3F * spacing * spacing;
-    float least = std::numeric_limits<float>::infinity();
-    std::int32_t best = places[begin].point;
-    for (std::size_t i = begin; i < end; ++i) {
-      float distance = 0;
+    const auto distance = [&](const Place& place) {
+      float sum = 0;
       for (std::size_t a = 0; a < 3; ++a) {
-        const float d =
-            xyz[3 * static_cast<std::size_t>(places[i].point) + a] - mean[a] / static_cast<float>(end - begin);
-        distance += d * d;
+        const float d = xyz[3 * static_cast<std::size_t>(place.point) + a] - mean[a] / static_cast<float>(end - begin);
+        sum += d * d;
       }
-      if (distance < least - alike) {
-        least = distance;
-        best = places[i].point;
-      }
-    }
-    chosen.push_back(best);
+      return sum;
+    };
+    float least = std::numeric_limits<float>::infinity();
+    for (std::size_t i = begin; i < end; ++i) least = std::min(least, distance(places[i]));
+    std::size_t first = begin;
+    while (first + 1 < end && !(distance(places[first]) <= least + alike)) ++first;
+    chosen.push_back(places[first].point);
   }
   return chosen;
 }

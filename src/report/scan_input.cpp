@@ -121,15 +121,19 @@ double teeth_across(const TriangleMesh& mesh, const std::vector<int>& fdi) {
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
-RawLabels found_labels(const ScanLabelSource& source, ScanInput& input) {
-  SegmentedScan found = source.find(input.file.mesh);
+RawLabels found_labels(const ScanLabelSource& source, double millimetres_per_unit, ScanInput& input) {
+  SegmentOptions options;
+  options.jaw = source.jaw;
+  options.millimetres_per_unit = millimetres_per_unit;
+  SegmentedScan found = source.find(input.file.mesh, options);
   input.found = std::move(found.teeth);
   input.notes.push_back(found.jaw_reason);
   input.notes.insert(input.notes.end(), found.notes.begin(), found.notes.end());
   return {std::move(found.fdi), "a search for the teeth in the scan", found.jaw, LabelNumbers::fdi};
 }
 
-RawLabels raw_labels(const fs::path& scan, const ScanLabelSource& source, ScanInput& input) {
+RawLabels raw_labels(const fs::path& scan, const ScanLabelSource& source, double millimetres_per_unit,
+                     ScanInput& input) {
   const MeshFile& file = input.file;
   const auto from_file = [&](const std::string& json) { return labels_from_teeth3ds(json, file); };
   if (!source.labels.empty()) return reading(source.labels, from_file);
@@ -138,17 +142,18 @@ RawLabels raw_labels(const fs::path& scan, const ScanLabelSource& source, ScanIn
                                reading(source.palette, [](const std::string& text) { return read_palette(text); }));
   if (!source.array.empty() || has_label_array(file)) return labels_from_array(file, source.array);
   if (is_there(beside(scan))) return reading(beside(scan), from_file);
-  if (source.find) return found_labels(source, input);
+  if (source.find) return found_labels(source, millimetres_per_unit, input);
   throw InputError(
-      "Nothing tells this scan's teeth apart: it has no array of labels, and no file of labels lies beside it. Name "
-      "one "
-      "(--labels FILE.json), an array (--label-array NAME), or what its colours stand for (--palette FILE).");
+      "Nothing tells this scan's teeth apart: it has no array of labels, no file of labels lies beside it, and there "
+      "is "
+      "no model to find teeth with (segment.safetensors). Name a file (--labels FILE.json), an array (--label-array "
+      "NAME), or what its colours stand for (--palette FILE).");
 }
 
 /// Decides what the numbers mean, and cleans them.
 void set_labels(ScanInput& input, const RawLabels& raw, const ScanLabelSource& source, double millimetres_per_unit) {
   LabelNumberOptions options;
-  options.forced = source.numbers;
+  options.forced = input.found.empty() ? source.numbers : LabelNumbers::fdi;  // a search gives FDI numbers
   options.stated = raw.stated_numbers;
   options.jaw = source.jaw ? source.jaw : raw.stated_jaw;
   options.first_is_patients_right = source.first_is_patients_right;
@@ -186,7 +191,7 @@ ScanInput read_scan(const fs::path& path, const ScanLabelSource& source, double 
   });
   input.notes = input.file.notes;
   input.file.notes.clear();
-  const RawLabels raw = raw_labels(path, source, input);
+  const RawLabels raw = raw_labels(path, source, millimetres_per_unit, input);
   try {
     set_labels(input, raw, source, millimetres_per_unit);
   } catch (const InputError& error) {

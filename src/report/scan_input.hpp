@@ -25,8 +25,9 @@ struct ScanLabelSource {
   std::optional<LabelNumbers> numbers;
   std::optional<Jaw> jaw;
   std::optional<bool> first_is_patients_right;  ///< of numbers along the arch
-  /// Finds the teeth of a scan that nothing tells apart (`segment_scan`); empty: such a scan is refused.
-  std::function<SegmentedScan(const TriangleMesh& scan)> find;
+  /// Finds the teeth of a scan that nothing tells apart, such as `segment_scan`; empty: such a scan is refused. The
+  /// options have what this source and the caller know of the scan: its jaw, its unit.
+  std::function<SegmentedScan(const TriangleMesh& scan, const SegmentOptions& options)> find;
 };
 
 /// A scan with its teeth, as read.

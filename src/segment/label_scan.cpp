@@ -139,20 +139,21 @@ ToothInstances numbered_only(const ToothInstances& found, const ArchNumbers& num
 
 constexpr std::size_t least_teeth = 3;
 
-void require_arch(const std::vector<ToothNumber>& teeth) {
+void require_arch(const std::vector<ToothNumber>& teeth, bool a_person_knows) {
   if (teeth.empty()) throw InputError("No tooth was found: this is no scan of an arch of teeth.");
   if (teeth.size() < least_teeth)
     throw InputError(
         fmt::format("Only {} {} found: this is no scan of an arch of teeth. A single crown goes to complete.",
                     teeth.size(), teeth.size() == 1 ? "tooth was" : "teeth were"));
-  // A surface of knobs has some teeth, too, but no numbers: those of arches are sure to 70 % and more in the mean.
+  // A surface of knobs has some teeth, too, but no numbers: those of generated arches, parts and few teeth among them,
+  // are sure to 70 % and more in the mean.
   constexpr double least_sure = 0.4;
   double sure = 0;
   for (const ToothNumber& tooth : teeth) sure += tooth.probability / static_cast<double>(teeth.size());
-  if (sure < least_sure)
+  if (sure < least_sure && !a_person_knows)
     throw InputError(fmt::format(
         "{} shapes like teeth were found, but not in the order of an arch (their numbers are sure to {:.0f} % in the "
-        "mean): this is no scan of an arch of teeth.",
+        "mean): this is no scan of an arch of teeth. If it is, say what you know of it (--jaw, --missing, --tooth).",
         teeth.size(), 100 * sure));
 }
 
@@ -204,7 +205,7 @@ SegmentedScan label_scan(const TriangleMesh& scan, const TeethReading& reading, 
   result.jaw_reason = decision.reason;
   std::vector<ToothNumber> numbers;
   const ToothInstances teeth = numbered_only(found, decision.numbers, reading.size(), numbers);
-  require_arch(numbers);
+  require_arch(numbers, !options.teeth.empty());
   std::vector<int> labels = draw_borders(scan, reading, teeth);
   keep_largest_pieces(scan, labels);
   for (const int label : labels) result.fdi.push_back(label < 0 ? 0 : *numbers[static_cast<std::size_t>(label)].fdi);

@@ -62,7 +62,19 @@ class Costs {
   Costs(const std::vector<ToothInstance>& teeth, const std::vector<std::size_t>& order, Jaw jaw, const ArchModel& model,
         const NumberingOptions& options)
       : teeth_(teeth), order_(order), jaw_(jaw), options_(options) {
-    for (int s = 0; s < place_count; ++s) model_.push_back(model_place(model, s, jaw));
+    std::vector<Eigen::Vector3d> places;
+    for (int s = 0; s < place_count; ++s) places.push_back(model_place(model, s, jaw));
+    const auto apart = [&](std::size_t a, std::size_t b) { return (places[a] - places[b]).norm(); };
+    // What a tooth takes up along the arch, from the distances to its neighbours.
+    const auto width = [&](std::size_t s) {
+      if (s == 0) return apart(0, 1);
+      return s + 1 == places.size() ? apart(s - 1, s) : (apart(s - 1, s) + apart(s, s + 1)) / 2;
+    };
+    for (std::size_t a = 0; a < places.size(); ++a)
+      for (std::size_t b = 0; b < places.size(); ++b) {
+        open_[a][b] = apart(a, b);
+        closed_[a][b] = (width(a) + width(b)) / 2;
+      }
   }
 
   int count() const { return static_cast<int>(order_.size()); }
@@ -101,10 +113,10 @@ class Costs {
   /// Of the distance between neighbours: as in the model, or, where teeth lack between them, of a closed gap.
   double distance(int i, int s, int j, int next) const {
     const double is = (tooth(i).middle - tooth(j).middle).norm();
-    const double open =
-        likelihood(is, (model_[static_cast<std::size_t>(s)] - model_[static_cast<std::size_t>(next)]).norm());
+    const auto a = static_cast<std::size_t>(s), b = static_cast<std::size_t>(next);
+    const double open = likelihood(is, open_[a][b]);
     if (next == s + 1) return -open;
-    const double closed = likelihood(is, (width(s) + width(next)) / 2);
+    const double closed = likelihood(is, closed_[a][b]);
     return -log_sum(std::log(1 - options_.closed) + open, std::log(options_.closed) + closed);
   }
 
@@ -115,23 +127,12 @@ class Costs {
     return log_sum(-0.5 * off * off, -options_.most_off);
   }
 
-  /// What a tooth takes up along the arch, from the distances to its neighbours, mm.
-  double width(int s) const {
-    double sum = 0;
-    int sides = 0;
-    for (const int beside : {s - 1, s + 1})
-      if (beside >= 0 && beside < place_count) {
-        sum += (model_[static_cast<std::size_t>(s)] - model_[static_cast<std::size_t>(beside)]).norm();
-        ++sides;
-      }
-    return sum / sides;
-  }
-
   const std::vector<ToothInstance>& teeth_;
   const std::vector<std::size_t>& order_;
   Jaw jaw_;
   const NumberingOptions& options_;
-  std::vector<Eigen::Vector3d> model_;
+  /// mm between the middles of the teeth at two places: in the model, and where they touch.
+  std::array<std::array<double, place_count>, place_count> open_{}, closed_{};
 };
 
 using Table = std::vector<std::array<double, place_count>>;
@@ -189,6 +190,9 @@ double ending(const Costs& costs, int i, int s) {
 }
 
 void require_numbers_of(Jaw jaw, const NumberingOptions& options) {
+  const double first = options.first_premolars_out, second = options.second_premolars_out;
+  if (!(first >= 0 && second >= 0 && first + second < 1))
+    throw UsageError("Premolars cannot be taken out in less than none or all jaws.");
   std::set<int> seen;
   for (const auto& [tooth, fdi] : options.given) {
     if (!is_permanent_tooth(fdi) || jaw_of_fdi(fdi) != jaw)
@@ -274,7 +278,11 @@ std::vector<Supposition> suppositions(const std::vector<ToothInstance>& teeth, c
         supposed.missing_teeth.insert(fdi);
       }
     if (contradicts || !(share > 0)) continue;
-    all.push_back(carried_through(Costs(teeth, order, jaw, model, supposed), std::log(share)));
+    // What a person says is missing costs nothing below, but is no likelier to be one of a pair for that.
+    double prior = std::log(share);
+    for (const int fdi : options.missing_teeth)
+      if ((fdi % 10 == 4 || fdi % 10 == 5) && jaw_of_fdi(fdi) == jaw && fdi % 10 != number) prior -= options.missing;
+    all.push_back(carried_through(Costs(teeth, order, jaw, model, supposed), prior));
   }
   return all;
 }

@@ -129,7 +129,7 @@ Eigen::Vector3d facing_most(const TriangleMesh& scan) {
   }
   Eigen::Vector3d most = *std::max_element(
       sums.begin(), sums.end(), [](const auto& a, const auto& b) { return a.squaredNorm() < b.squaredNorm(); });
-  // The cells are the world's: the plane's own directions, all of them, do not hang on how the scan lies.
+  // The cells are the world's: all that faces the same way, whatever cells it is in, hangs little on how the scan lies.
   constexpr double alike = 0.97;  // cosine
   for (int round = 0; round < 3; ++round) {
     const Eigen::Vector3d direction = most.normalized();
@@ -154,6 +154,8 @@ ScanPoints scan_points(const TriangleMesh& scan, const ScanFrame& frame) {
     while (end < pieces.size() && pieces[end].cell == pieces[begin].cell) ++end;
     add_point(pieces.data() + begin, pieces.data() + end, points);
   }
+  if (points.cloud.size() == 0)
+    throw InputError("The scan has no side: each place of its surface is there twice, facing both ways.");
   add_curvatures(points.cloud);
   return points;
 }

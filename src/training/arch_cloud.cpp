@@ -54,8 +54,8 @@ ScanFrame true_frame(const GeneratedArch& arch) {
   return {in_arch * arch.rotation.transpose(), area_centroid(arch.scan)};
 }
 
-LabelledCloud make_arch_cloud(const ArchFamily& family, std::uint64_t seed) {
-  const GeneratedArch arch = sample_arch(family, seed);
+LabelledCloud make_arch_cloud(const ArchFamily& family, std::uint64_t seed, const ArchDrawOptions& options) {
+  const GeneratedArch arch = sample_arch(family, seed, options);
   ScanPoints points = scan_points(arch.scan, true_frame(arch));
   LabelledCloud scan;
   scan.upper = arch.jaw == Jaw::upper;
@@ -65,10 +65,11 @@ LabelledCloud make_arch_cloud(const ArchFamily& family, std::uint64_t seed) {
   return scan;
 }
 
-LabelledCloud kept_arch_cloud(const ArchFamily& family, std::uint64_t seed, const std::filesystem::path& folder) {
+LabelledCloud kept_arch_cloud(const ArchFamily& family, std::uint64_t seed, const std::filesystem::path& folder,
+                              const ArchDrawOptions& options) {
   const std::filesystem::path path = folder / ("arch_" + std::to_string(seed) + ".safetensors");
   if (std::filesystem::exists(path)) return load(path);
-  LabelledCloud scan = make_arch_cloud(family, seed);
+  LabelledCloud scan = make_arch_cloud(family, seed, options);
   std::filesystem::create_directories(folder);
   save(scan, path);
   return scan;

@@ -115,6 +115,21 @@ TEST_F(PairOfFiles, RenderWritesAPicture) {
   EXPECT_EQ(png.substr(1, 3), "PNG");
   EXPECT_EQ(static_cast<unsigned char>(png[19]), 120);  // width: three tiles
   EXPECT_EQ(static_cast<unsigned char>(png[23]), 100);  // height: two meshes
+  ASSERT_EQ(
+      run("render crown.stl tooth.ply crown.stl -o row.png --width 40 --height 50 --views front --per-row 2").code, 0);
+  const std::string row = test::read_all(folder.path() / "row.png");
+  EXPECT_EQ(static_cast<unsigned char>(row[19]), 80);
+  EXPECT_EQ(static_cast<unsigned char>(row[23]), 100);
+  EXPECT_EQ(run("render crown.stl -o alone.png --width 40 --height 50 --per-row 64").code, 0);
+  // Numbers of teeth, also of milk teeth and wrong ones.
+  for (const char* number : {"36", "75", "33", "0"}) {
+    folder.write("labels.ply",
+                 std::string("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                             "property float z\nproperty uchar fdi\nelement face 1\nproperty list uchar int "
+                             "vertex_indices\nend_header\n0 0 0 ") +
+                     number + "\n1 0 0 36\n0 1 0 36\n3 0 1 2\n");
+    EXPECT_EQ(run("render labels.ply -o labels.png --width 40 --height 50").code, 0) << number;
+  }
 }
 
 }  // namespace

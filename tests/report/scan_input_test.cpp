@@ -95,6 +95,22 @@ TEST(ReadScan, FindsLabelsBesideTheScanOrWhereItIsTold) {
   const MadeScan made = made_scan();
   const auto scan = folder.write("scan.obj", made.obj);
   EXPECT_THROW(read_scan(scan), InputError);  // nothing tells
+  ScanLabelSource search;
+  search.numbers = LabelNumbers::universal;  // of labels in files: what was found is FDI
+  search.jaw = Jaw::lower;
+  search.find = [&](const TriangleMesh& mesh, const SegmentOptions& options) {
+    EXPECT_EQ(options.jaw, Jaw::lower);
+    EXPECT_EQ(options.millimetres_per_unit, 1.5);
+    SegmentedScan found;
+    found.fdi = made.labels;
+    found.teeth = {{36, 0.9, {}, 0, mesh.vertices.front(), 1}, {37, 0.8, {}, 0, mesh.vertices.front(), 1}};
+    found.jaw_reason = "It was told.";
+    return found;
+  };
+  const ScanInput searched = read_scan(scan, search, 1.5);
+  EXPECT_EQ(searched.scan.fdi, made.labels);
+  EXPECT_EQ(searched.found.size(), 2U);
+  EXPECT_EQ(searched.notes.front(), "It was told.");
   folder.write("scan.json", made.json());
   const ScanInput beside = read_scan(scan);
   EXPECT_EQ(beside.scan.fdi, made.labels);

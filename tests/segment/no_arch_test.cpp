@@ -6,11 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <numbers>
 #include <string>
+#include <utility>
 
 namespace rhizodont {
 namespace {
@@ -69,7 +71,7 @@ TEST(NoArch, RowsOfKnobsAreRefused) {
   expect_refused(
       sheet(140, 110,
             [](double s, double t) { return Point(70 * s, 55 * t, 1.5 * std::sin(40 * s) * std::cos(35 * t)); }),
-      "no scan of an arch");
+      "not in the order of an arch");
 }
 
 TEST(NoArch, AnImpressionOfTeethIsRefused) {

@@ -97,6 +97,13 @@ TEST(Numbering, BelievesTheNetworkWherePremolarsWereTakenOutAndTheGapsClosed) {
     EXPECT_LE(n.probability + n.second_probability, 1 + 1e-9);
     EXPECT_GT(n.probability, n.second_probability);
   }
+  // That one of the pair is missing makes the other's absence no less likely; a premolar that is there ends the matter.
+  NumberingOptions told;
+  told.missing_teeth = {14};
+  EXPECT_EQ(numbers_of(number_teeth(read, Jaw::upper, mean_arch(), told)), upper);
+  told.missing_teeth = {};
+  told.given = {{2, 14}};
+  EXPECT_EQ(number_teeth(read, Jaw::upper, mean_arch(), told).teeth[2].fdi, 14);
   NumberingOptions never;
   never.first_premolars_out = never.second_premolars_out = 0;
   EXPECT_GT(numbers.evidence, number_teeth(read, Jaw::upper, mean_arch(), never).evidence);

@@ -4,6 +4,7 @@
 
 #include "base/float_bits.hpp"
 #include "networks/cloud_grid.hpp"
+#include "rhizodont/error.hpp"
 
 #include <Eigen/Geometry>
 
@@ -81,6 +82,13 @@ TEST(ScanPoints, TurnedOnesAreThoseOfATurnedFrame) {
   ScanPyramid pyramid = scan_pyramid(cloud, {});
   const Eigen::Matrix3d rotation = Eigen::AngleAxisd(0.7, Eigen::Vector3d(0.3, 1, 2).normalized()).toRotationMatrix();
   turn(rotation, pyramid);
+  ScanCloud turned = cloud;
+  turn(rotation, turned);
+  for (std::size_t l = 1; l < ScanShape::levels; ++l)
+    for (std::size_t i = 0; i < pyramid.levels[l].size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k)
+        ASSERT_EQ(pyramid.levels[l].positions[3 * i + k],
+                  pyramid.levels[l - 1].positions[3 * static_cast<std::size_t>(pyramid.levels[l].from[i]) + k]);
   for (std::size_t i = 0; i < pyramid.levels[0].size(); ++i) {
     const auto p = 3 * static_cast<std::size_t>(pyramid.levels[0].from[i]);
     for (Eigen::Index a = 0; a < 3; ++a) {
@@ -89,8 +97,22 @@ TEST(ScanPoints, TurnedOnesAreThoseOfATurnedFrame) {
       const double is = (rotation * place.cast<double>())[a];
       EXPECT_NEAR(static_cast<double>(pyramid.levels[0].positions[3 * i + k]), is, 1e-4);
       EXPECT_NEAR(static_cast<double>(pyramid.features[scan_feature_count * i + k]), is / 25, 1e-5);
+      EXPECT_EQ(turned.positions[p + k], pyramid.levels[0].positions[3 * i + k]);
+      const Eigen::Vector3f normal(cloud.normals[p], cloud.normals[p + 1], cloud.normals[p + 2]);
+      EXPECT_NEAR(static_cast<double>(turned.normals[p + k]), (rotation * normal.cast<double>())[a], 1e-5);
+      EXPECT_EQ(pyramid.levels[0].normals[3 * i + k], turned.normals[p + k]);
+      EXPECT_EQ(pyramid.features[scan_feature_count * i + 3 + k], turned.normals[p + k]);
     }
   }
+}
+
+TEST(ScanPoints, ASheetThatFacesBothWaysIsRefused) {
+  TriangleMesh scan = hills(false);
+  const TriangleMesh once = scan;
+  const auto first = static_cast<std::int32_t>(once.vertices.size());
+  scan.vertices.insert(scan.vertices.end(), once.vertices.begin(), once.vertices.end());
+  for (const Triangle& t : once.triangles) scan.triangles.push_back({first + t[0], first + t[2], first + t[1]});
+  EXPECT_THROW(scan_points(scan, {}), InputError);
 }
 
 }  // namespace
