@@ -25,3 +25,4 @@ for crown in samples/crown_*; do
 done
 "$program" render "${teeth[@]}" -o results/teeth.png --views front,right,oblique --width 320 --height 400
 echo "Teeth, their reports (.json), proofs and figures (.txt) are in $(pwd)/results, drawn together in teeth.png"
+echo "To look and work with them in the browser: $(pwd)/$program serve, then open http://127.0.0.1:8080/"

@@ -10,13 +10,13 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libcgal-dev libeigen3-dev libtbb-dev libnanoflann-dev libcli11-dev nlohmann-json3-dev libfmt-dev libpugixml-dev
-  zlib1g-dev liblz4-dev libpng-dev libssl-dev
+  zlib1g-dev liblz4-dev libpng-dev libssl-dev libcpp-httplib-dev libzip-dev pkg-config
 )
 case ${1:-all} in
   program) ;;
   all)
     packages+=(
-      clang-format clang-tidy libgtest-dev libtorch-dev libgloo-dev libopenblas0-openmp
+      chromium fonts-dejavu-core clang-format clang-tidy libgtest-dev libtorch-dev libgloo-dev libopenblas0-openmp
       python3-numpy python3-scipy python3-open3d python3-jsonschema
       slurmctld slurmd slurm-client munge
     )
@@ -26,6 +26,9 @@ case ${1:-all} in
     exit 2
     ;;
 esac
+
+# Debian's npm does not go with a nodejs from elsewhere, so an npm that is there is taken as it is.
+command -v npm > /dev/null || packages+=(npm)
 
 missing=()
 for package in "${packages[@]}"; do

@@ -16,3 +16,4 @@ scripts/tidy_changed.sh --at-most 12
 rm -rf build/test_results
 GTEST_OUTPUT="xml:$PWD/build/test_results/" ctest --test-dir build --output-on-failure --no-tests=error -j 2
 /usr/bin/python3 scripts/check_skipped.py build/test_results
+[ -f build/web/dist/app.js ] || echo "The page was neither built nor tested: npm or its packages could not be reached (see CMake's warning above)."

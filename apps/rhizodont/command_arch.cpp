@@ -4,6 +4,7 @@
 #include "command_line/output_checks.hpp"
 #include "commands.hpp"
 #include "report/arch_files.hpp"
+#include "report/html_report.hpp"
 #include "report/scan_input.hpp"
 #include "rhizodont/arch.hpp"
 #include "rhizodont/error.hpp"
@@ -27,7 +28,7 @@ namespace rhizodont::command_line {
 namespace {
 
 struct ArchCommand {
-  std::string scan, output, models, lengths_file;
+  std::string scan, output, models, lengths_file, report;
   ScanLabelSource source;
   std::vector<std::string> lengths;  // "36=14.2"
   ArchFileOptions files;
@@ -72,7 +73,24 @@ void print_summary(const CompletedArch& arch) {
   }
 }
 
+/// The report as a page, where one was asked for; after the folder's files, which it may lie among.
+void add_page(const ArchCommand& command, const ScanInput& input, const CompletedArch& arch,
+              const std::vector<std::filesystem::path>& weights, std::vector<OutputFile>& files) {
+  if (command.report.empty()) return;
+  files.push_back({command.report, html_report(arch_report(input, arch, command.options, command.files),
+                                               {report_views(input, arch), "", hashes_of(weights)})});
+}
+
+/// Before hours of work.
+void require_page(const std::string& report) {
+  if (report.empty()) return;
+  if (!is_page_name(report))
+    throw UsageError("--report is a page to look at: give it a name in .html. The folder has its JSON as arch.json.");
+  require_report_page();
+}
+
 void run(ArchCommand& command) {
+  require_page(command.report);
   for (const std::string& length : command.lengths) add_length(length, command.options.root_lengths);
   const std::filesystem::path models =
       command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
@@ -83,16 +101,18 @@ void run(ArchCommand& command) {
       if (!command.options.root_lengths.emplace(fdi, mm).second)
         throw UsageError(fmt::format("Tooth {} has two root lengths.", fdi));
   }
-  for (const std::filesystem::path& file : model_files(models)) inputs.push_back(file);
+  std::vector<std::filesystem::path> weights = model_files(models);
   if (SegmentModels::are_in(models)) {
-    for (const std::filesystem::path& file : segment_model_files(models)) inputs.push_back(file);
+    for (const std::filesystem::path& file : segment_model_files(models)) weights.push_back(file);
     command.source.find = [&](const TriangleMesh& scan, SegmentOptions search) {
       search.threads = command.options.tooth.threads;
       return segment_scan(scan, SegmentModels::load(models), search);
     };
   }
+  inputs.insert(inputs.end(), weights.begin(), weights.end());
   ScanInput input = read_scan(command.scan, command.source, command.options.tooth.millimetres_per_unit);
-  const std::vector<std::filesystem::path> names = arch_file_names(input.scan, command.files, command.output);
+  std::vector<std::filesystem::path> names = arch_file_names(input.scan, command.files, command.output);
+  if (!command.report.empty()) names.emplace_back(command.report);
   require_safe_outputs(inputs, names);
   require_new(names, command.overwrite);
   if (!command.quiet)
@@ -103,7 +123,9 @@ void run(ArchCommand& command) {
   CompletedArch arch =
       complete_arch(input.scan, CompletionModels::load(models), command.options, progress_line(command.quiet));
   refuse_what_no_file_holds(arch, command.files);
-  write_output_files(arch_files(input, arch, command.options, command.files, command.output));
+  std::vector<OutputFile> files = arch_files(input, arch, command.options, command.files, command.output);
+  add_page(command, input, arch, weights, files);
+  write_output_files(files);
   if (!command.quiet) {
     print_summary(arch);
     for (const ToothClearance& c : arch.clearances)
@@ -164,6 +186,7 @@ void add_arch_command(CLI::App& app) {
       ->capture_default_str();
   add_unit_option(*arch, command->options.tooth.millimetres_per_unit,
                   "Unit of the scan's file: mm, cm, m, um, in, also in full and in capitals");
+  arch->add_option("--report", command->report, "Write a page to look at, too: all teeth in one file (.html)");
   arch->add_flag("--name-in-report", command->name_in_report,
                  "The report names the scan's file; else it holds its hash alone, for names tell of patients");
   arch->add_flag("--overwrite", command->overwrite, "Replace files that are in the folder already");

@@ -4,6 +4,7 @@
 #include "command_line/words.hpp"
 #include "commands.hpp"
 #include "complete_jobs.hpp"
+#include "report/html_report.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -22,6 +23,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace rhizodont::command_line {
@@ -87,6 +89,9 @@ class Completion {
         jobs_(plan_complete(command.files, models_folder_)) {
     if (!command.files.confidence.empty() && !skirt_threshold(command.skirt))
       throw UsageError("A confidence is there only where a skirt is looked for (--skirt auto).");
+    for (const CrownJob& job : jobs_)
+      for (const auto& report : job.reports)
+        if (is_page_name(report)) require_report_page();
     for (const CrownJob& job : jobs_)
       for (const auto* names : {&job.teeth, &job.reports})
         for (const auto& name : *names)
@@ -191,14 +196,25 @@ class Completion {
     if (!job.confidence.empty()) add_mesh(job.confidence, confidence_file(crown, candidates.front().record));
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       add_mesh(job.teeth[i], tooth_file(candidates[i], crown));
+      std::map<std::string, std::string> views;
+      if (!job.reports.empty() && is_page_name(job.reports[i])) views = report_views(candidates[i], crown);
       refer_to_file(candidates[i].record, crown, name_with_format(job.teeth[i], command_.files.output_format));
-      if (!job.reports.empty()) results.push_back({job.reports[i], completion_report(candidates[i], input)});
+      if (!job.reports.empty())
+        results.push_back(
+            {job.reports[i], as_named(job.reports[i], completion_report(candidates[i], input), std::move(views))});
     }
     write_output_files(results);
   }
 
   void print_results(const CrownJob& job, const std::vector<CompletedTooth>& candidates) const {
     for (std::size_t i = 0; i < candidates.size(); ++i) print_summary(words_, candidates[i], job.teeth[i].string());
+  }
+
+  /// The report as JSON, or as a page where its name says so.
+  std::string as_named(const std::filesystem::path& name, const std::string& report,
+                       std::map<std::string, std::string> views) const {
+    if (!is_page_name(name)) return report;
+    return html_report(report, {std::move(views), "", hashes_of(model_files(models_folder_))});
   }
 
   /// The crown's name goes to the screen alone: reports are passed on, and names tell of patients.
@@ -211,7 +227,9 @@ class Completion {
   int write_refusal(const Error& error, const Attempt& attempt, const CrownJob& job) const {
     try {
       write_output_files(
-          {{job.reports.front(), completion_refusal_report(error, attempt.options, attempt.input, attempt.notes)}});
+          {{job.reports.front(),
+            as_named(job.reports.front(),
+                     completion_refusal_report(error, attempt.options, attempt.input, attempt.notes), {})}});
       return 0;
     } catch (const Error& unwritable) {
       say(error_line(unwritable), job, false);
@@ -256,8 +274,9 @@ void add_file_options(CLI::App& complete, CompleteCommand& command) {
   complete.add_option(
       "--fdi", files.fdi,
       "FDI number of the tooth, 11-48; without it the one in the file's name, else the type is guessed");
-  complete.add_option("--report", files.report,
-                      "Write the report (JSON) to this file or folder, also if the crown is refused");
+  complete.add_option(
+      "--report", files.report,
+      "Write the report to this file or folder, also if the crown is refused: JSON, or a page to look at (.html)");
   complete.add_flag("--name-in-report", command.name_in_report,
                     "The report names the crown's file; else it holds its hash alone, for names tell of patients");
   complete.add_option("--skirt-confidence", files.confidence,

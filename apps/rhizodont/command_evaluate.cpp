@@ -9,23 +9,28 @@
 #include "evaluation/template_predictor.hpp"
 #include "json_option.hpp"
 #include "networks/safetensors.hpp"
+#include "report/html_report.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/hash.hpp"
 #include "rhizodont/io.hpp"
+#include "rhizodont/version.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace rhizodont::command_line {
 namespace {
 
 struct EvaluateCommand {
-  std::string cases, templates, models, csv, plot, calibrate, labels;
+  std::string cases, templates, models, csv, plot, report, calibrate, labels;
   JsonOption json;
   CompleteOptions options;
 };
@@ -149,9 +154,9 @@ void require_safe_places(const EvaluateCommand& command, const std::vector<Evalu
   std::vector<std::filesystem::path> inputs = files_below(command.templates);
   for (const EvaluationCase& files : cases) inputs.insert(inputs.end(), {files.crown, files.truth});
   std::vector<std::filesystem::path> outputs = command.json.outputs();
-  for (const std::string* file : {&command.csv, &command.plot}) {
+  for (const std::string* file : {&command.csv, &command.plot, &command.report}) {
     if (file->empty()) continue;
-    require_no_mesh_ending(*file, "a table or a plot");
+    require_no_mesh_ending(*file, "a table, a plot or a page");
     outputs.emplace_back(*file);
   }
   require_separate_files(model_files(models_folder(command)), outputs);
@@ -159,7 +164,30 @@ void require_safe_places(const EvaluateCommand& command, const std::vector<Evalu
   require_safe_outputs(inputs, outputs);
 }
 
+/// Figures, plot and where they come from, as a page in one file.
+std::string page_of(const EvaluateCommand& command, const std::vector<EvaluationCase>& cases,
+                    const Evaluation& evaluation) {
+  std::string hashes;  // of all crowns and true teeth, in the order of the cases
+  for (const EvaluationCase& files : cases)
+    for (const std::filesystem::path& file : {files.crown, files.truth})
+      hashes += sha256_of_bytes(read_file_bytes(file)) + "\n";
+  nlohmann::ordered_json report{{"program", {{"name", "rhizodont"}, {"version", RHIZODONT_VERSION}}},
+                                {"notice", "Predicted roots are not the patient's anatomy. For research only."},
+                                {"input", {{"file", nullptr}, {"sha256", sha256_of_bytes(hashes)}}},
+                                {"options", {{"e_mm", command.options.e}}},
+                                {"evaluation", evaluation},
+                                {"scanner_limits", describe(CbctNoise{})}};
+  const bool has_figures = mean_figures(evaluation, 0).teeth > 0;
+  return html_report(
+      report.dump(),
+      {{}, has_figures ? root_length_plot(evaluation) : "", hashes_of(model_files(models_folder(command)))});
+}
+
 void run(const EvaluateCommand& command) {
+  if (!command.report.empty()) {
+    if (!is_page_name(command.report)) throw UsageError("--report is a page to look at: give it a name in .html.");
+    require_report_page();
+  }
   const std::vector<EvaluationCase> cases = find_evaluation_cases(command.cases);
   require_safe_places(command, cases);
   std::vector<NamedPredictor> predictors{rhizodont_predictor(command)};
@@ -177,6 +205,7 @@ void run(const EvaluateCommand& command) {
   std::vector<OutputFile> results = command.json.print_or_file(*evaluation);
   if (!command.csv.empty()) results.push_back({command.csv, evaluation_csv(*evaluation)});
   if (!command.plot.empty()) results.push_back({command.plot, root_length_plot(*evaluation)});
+  if (!command.report.empty()) results.push_back({command.report, page_of(command, cases, *evaluation)});
   if (!command.calibrate.empty()) results.push_back(calibrated_weights(command, *evaluation));
   write_output_files(results);
   if (evaluation->has_failures()) exit_with(static_cast<int>(ErrorCode::no_result));
@@ -198,6 +227,7 @@ void add_evaluate_command(CLI::App& app) {
   evaluate->add_option("--models", command->models, "Folder with completion.safetensors and atlas.safetensors");
   evaluate->add_option("--csv", command->csv, "Write one line per tooth and predictor to this file");
   evaluate->add_option("--plot", command->plot, "Draw predicted against true root lengths to this SVG file");
+  evaluate->add_option("--report", command->report, "Write tables, plot and provenance as a page in one file (.html)");
   evaluate->add_option(
       "--calibrate", command->calibrate,
       "Scale the intervals in this weight file (--models' completion.safetensors) to these teeth, which "

@@ -18,6 +18,7 @@ void add_check_command(CLI::App& app);
 void add_measure_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_segment_command(CLI::App& app);
+void add_serve_command(CLI::App& app);
 void add_synth_command(CLI::App& app);
 void add_label_skirt_command(CLI::App& app);
 

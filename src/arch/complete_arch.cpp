@@ -3,6 +3,7 @@
 
 // "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", figure 1 and section 4.1: from a
 // segmented scan to whole teeth. What a person's lengths say of each other: person_lengths.cpp.
+#include "arch/arch_memory.hpp"
 #include "arch/arch_options.hpp"
 #include "arch/clearance.hpp"
 #include "arch/neck.hpp"
@@ -185,17 +186,17 @@ void warn_of_loss(CompletionRecord& record) {
 }
 
 /// The first attempt that gives a tooth. Throws as the first one where none does.
-void complete_one(ToothOfArch& tooth, const std::vector<Attempt>& attempts, const CompletionModels& models,
-                  std::optional<PreparedTooth>& prepared) {
+MadeTooth complete_one(const TriangleMesh& crown, const std::vector<Attempt>& attempts,
+                       const CompletionModels& models) {
   std::exception_ptr refused;
   for (const Attempt& attempt : attempts) {
     try {
-      prepared = prepare_tooth(tooth.crown, models, attempt.options);
-      tooth.tooth = finish_tooth(*prepared, attempt.options.steering, attempt.options.transition);
-      mark_contacts(*tooth.tooth);
-      warn_of_loss(tooth.tooth->record);
-      if (!attempt.warning.empty()) tooth.tooth->record.warnings.push_back(attempt.warning);
-      return;
+      const PreparedTooth prepared = prepare_tooth(crown, models, attempt.options);
+      CompletedTooth tooth = finish_tooth(prepared, attempt.options.steering, attempt.options.transition);
+      mark_contacts(tooth);
+      warn_of_loss(tooth.record);
+      if (!attempt.warning.empty()) tooth.record.warnings.push_back(attempt.warning);
+      return {prepared, std::move(tooth), ""};
     } catch (const UsageError&) {
       throw;
     } catch (const Error&) {
@@ -205,31 +206,87 @@ void complete_one(ToothOfArch& tooth, const std::vector<Attempt>& attempts, cons
   std::rethrow_exception(refused);
 }
 
-using Prepared = std::vector<std::optional<PreparedTooth>>;
+/// Whether a crown gives the same tooth with both, however many threads work. Number and directions are each tooth's
+/// own.
+bool give_the_same(const CompleteOptions& a, const CompleteOptions& b) {
+  // Named one by one: a new option that is forgotten here does not compile.
+  [[maybe_unused]] const auto& [fdi, e, cap, skirt, repair, unit, transition, directions, steering, threads] = a;
+  return e == b.e && cap == b.cap && skirt == b.skirt && repair == b.repair && unit == b.millimetres_per_unit &&
+         transition == b.transition && steering == b.steering;
+}
 
-Prepared complete_each(std::vector<ToothOfArch>& teeth, const std::map<int, ToothDirections>& directions,
-                       const CompletionModels& models, const ArchOptions& options, const ArchProgress& progress) {
-  Prepared prepared(teeth.size());
+std::optional<ToothDirections> directions_in(const std::map<int, ToothDirections>& directions, int fdi) {
+  const auto found = directions.find(fdi);
+  return found == directions.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool stand_the_same(const std::optional<ToothDirections>& a, const std::optional<ToothDirections>& b) {
+  if (!a || !b) return !a && !b;
+  return a->occlusal == b->occlusal && a->buccal == b->buccal;
+}
+
+/// Null if it is not there.
+const MadeTooth* remembered(const ArchMemory* memory, const ToothOfArch& tooth,
+                            const std::map<int, ToothDirections>& directions, const CompleteOptions& options) {
+  if (memory == nullptr) return nullptr;
+  const auto found = memory->teeth.find(tooth.fdi);
+  if (found == memory->teeth.end()) return nullptr;
+  const ArchMemory::Tooth& before = found->second;
+  const bool is_same = give_the_same(options, before.options) &&
+                       stand_the_same(directions_in(directions, tooth.fdi), before.directions) &&
+                       tooth.crown.triangles == before.crown.triangles && tooth.crown.vertices == before.crown.vertices;
+  return is_same ? &before.made : nullptr;
+}
+
+std::vector<MadeTooth> complete_each(const std::vector<ToothOfArch>& teeth,
+                                     const std::map<int, ToothDirections>& directions, const CompletionModels& models,
+                                     const ArchOptions& options, const ArchProgress& progress,
+                                     const ArchMemory* memory) {
+  std::vector<MadeTooth> all(teeth.size());
   Count count(progress, teeth.size());
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, teeth.size(), 1),
       [&](const auto& range) {
         for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          ToothOfArch& tooth = teeth[i];
+          const ToothOfArch& tooth = teeth[i];
           try {
             if (!is_permanent_tooth(tooth.fdi))
               throw InputError(fmt::format("Tooth {} is a milk tooth, and no model knows their roots.", tooth.fdi));
-            complete_one(tooth, attempts_for(tooth.fdi, directions, options.tooth), models, prepared[i]);
+            if (const MadeTooth* before = remembered(memory, tooth, directions, options.tooth))
+              all[i] = *before;
+            else
+              all[i] = complete_one(tooth.crown, attempts_for(tooth.fdi, directions, options.tooth), models);
           } catch (const UsageError&) {
             throw;
           } catch (const Error& error) {
-            tooth.refusal = error.what();
+            all[i].refusal = error.what();
           }
           count.one_more(tooth.fdi);
         }
       },
       tbb::simple_partitioner());
+  return all;
+}
+
+using Prepared = std::vector<std::optional<PreparedTooth>>;
+
+/// Puts the teeth into the arch; those that a memory will keep are copied.
+Prepared take(std::vector<MadeTooth>& made, std::vector<ToothOfArch>& teeth, bool are_kept) {
+  Prepared prepared;
+  for (std::size_t i = 0; i < teeth.size(); ++i) {
+    teeth[i].tooth = are_kept ? made[i].tooth : std::move(made[i].tooth);
+    teeth[i].refusal = made[i].refusal;
+    prepared.push_back(made[i].prepared);
+  }
   return prepared;
+}
+
+ArchMemory memory_of(std::vector<MadeTooth> made, const std::vector<ToothOfArch>& teeth,
+                     const std::map<int, ToothDirections>& directions, const CompleteOptions& options) {
+  ArchMemory memory;
+  for (std::size_t i = 0; i < teeth.size(); ++i)
+    memory.teeth[teeth[i].fdi] = {teeth[i].crown, directions_in(directions, teeth[i].fdi), options, std::move(made[i])};
+  return memory;
 }
 
 /// What was said of a tooth holds for the one that is made anew of the same crown.
@@ -373,6 +430,34 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
   arch.notes.insert(arch.notes.end(), resolved.notes.begin(), resolved.notes.end());
 }
 
+CompletedArch complete(const LabelledScan& scan, const CompletionModels& models, const ArchOptions& options,
+                       const ArchProgress& progress, ArchMemory* memory) {
+  require_options_in_range(options);
+  const CompletionModels::Content& content = *content_of(models);
+  if (options.tooth.skirt && !content.skirt)
+    throw UsageError("The models' folder has no weights to find a skirt with (skirt.safetensors).");
+  if (!content.arch) throw UsageError("The models' folder has no model of the arch (arch.safetensors).");
+  return with_threads(options.tooth.threads, [&] {
+    require_numbers_of_teeth(scan.fdi);
+    CompletedArch arch;
+    arch.teeth = cut(scan);
+    require_lengths_of_teeth_there(arch.teeth, options);
+    arch.gum = gum_of(scan.mesh, scan.fdi);
+    require_size_of_arch(arch.teeth, options.tooth.millimetres_per_unit);
+    const std::map<int, ToothDirections> directions =
+        directions_of(arch.teeth, *content.arch, options.tooth.millimetres_per_unit, arch.upright);
+    std::vector<MadeTooth> made = complete_each(arch.teeth, directions, models, options, progress, memory);
+    const Prepared prepared = take(made, arch.teeth, memory != nullptr);
+    heed_measured(arch.teeth, prepared, options, arch.notes);
+    for (const bool upper : {true, false}) {
+      if (options.resolve_collisions) resolve(arch, prepared, options, upper);
+      measure_clearances(arch, upper);
+    }
+    if (memory != nullptr) *memory = memory_of(std::move(made), arch.teeth, directions, options.tooth);
+    return arch;
+  });
+}
+
 }  // namespace
 
 void require_options_in_range(const ArchOptions& options) {
@@ -415,28 +500,12 @@ CompleteOptions ArchOptions::skirt_and_repair() {
 
 CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& models, const ArchOptions& options,
                             const ArchProgress& progress) {
-  require_options_in_range(options);
-  const CompletionModels::Content& content = *content_of(models);
-  if (options.tooth.skirt && !content.skirt)
-    throw UsageError("The models' folder has no weights to find a skirt with (skirt.safetensors).");
-  if (!content.arch) throw UsageError("The models' folder has no model of the arch (arch.safetensors).");
-  return with_threads(options.tooth.threads, [&] {
-    require_numbers_of_teeth(scan.fdi);
-    CompletedArch arch;
-    arch.teeth = cut(scan);
-    require_lengths_of_teeth_there(arch.teeth, options);
-    arch.gum = gum_of(scan.mesh, scan.fdi);
-    require_size_of_arch(arch.teeth, options.tooth.millimetres_per_unit);
-    const std::map<int, ToothDirections> directions =
-        directions_of(arch.teeth, *content.arch, options.tooth.millimetres_per_unit, arch.upright);
-    const Prepared prepared = complete_each(arch.teeth, directions, models, options, progress);
-    heed_measured(arch.teeth, prepared, options, arch.notes);
-    for (const bool upper : {true, false}) {
-      if (options.resolve_collisions) resolve(arch, prepared, options, upper);
-      measure_clearances(arch, upper);
-    }
-    return arch;
-  });
+  return complete(scan, models, options, progress, nullptr);
+}
+
+CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& models, const ArchOptions& options,
+                            const ArchProgress& progress, ArchMemory& memory) {
+  return complete(scan, models, options, progress, &memory);
 }
 
 }  // namespace rhizodont

@@ -185,6 +185,8 @@ Json report_json(const ScanInput& input, const CompletedArch& arch, const ArchOp
   for (const auto& [fdi, mm] : options.root_lengths) lengths[std::to_string(fdi)] = mm;
   std::vector<std::string> notes = input.notes;
   notes.insert(notes.end(), arch.notes.begin(), arch.notes.end());
+  Json upright = nullptr;
+  if (const auto& turn = arch.upright) upright = {numbers(turn->row(0)), numbers(turn->row(1)), numbers(turn->row(2))};
   return {{"arch_report_version", arch_report_version},
           {"program", {{"name", "rhizodont"}, {"version", RHIZODONT_VERSION}}},
           {"notice", "Predicted roots are not the patient's anatomy. For research and visualisation only."},
@@ -199,6 +201,7 @@ Json report_json(const ScanInput& input, const CompletedArch& arch, const ArchOp
           {"rooted", arch.rooted()},
           {"teeth", teeth},
           {"clearances", clearances_json(arch)},
+          {"upright", upright},
           {"notes", notes}};
 }
 
@@ -246,6 +249,11 @@ void refuse_what_no_file_holds(CompletedArch& arch, const ArchFileOptions& how) 
   }
 }
 
+std::string arch_report(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,
+                        const ArchFileOptions& how) {
+  return text_of(report_json(input, arch, options, how));
+}
+
 std::vector<OutputFile> arch_files(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,
                                    const ArchFileOptions& how, const std::filesystem::path& folder) {
   std::vector<OutputFile> files;
@@ -264,7 +272,7 @@ std::vector<OutputFile> arch_files(const ScanInput& input, const CompletedArch& 
         {folder / name_of("tooth", tooth.fdi, "json"), completion_report(referring, {crown_sha256, {}, {}})});
   }
   add_labels(input, how, folder, files);
-  files.push_back({folder / "arch.json", text_of(report_json(input, arch, options, how))});
+  files.push_back({folder / "arch.json", arch_report(input, arch, options, how)});
   if (arch.rooted() == 0) return files;
   const MeshFile all = arch_in_one(arch);
   files.push_back({folder / "arch.glb", scene_of(arch, options.tooth.millimetres_per_unit)});

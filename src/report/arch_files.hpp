@@ -33,6 +33,10 @@ struct ArchFileOptions {
 std::vector<OutputFile> arch_files(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,
                                    const ArchFileOptions& how, const std::filesystem::path& folder);
 
+/// The report alone (JSON), as in arch.json.
+std::string arch_report(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,
+                        const ArchFileOptions& how);
+
 /// Refuses those teeth that their file's format cannot hold (`require_format_holds`); to be called before `arch_files`.
 void refuse_what_no_file_holds(CompletedArch& arch, const ArchFileOptions& how);
 

@@ -4,6 +4,7 @@
 
 #include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
+#include "rhizodont/error.hpp"
 #include "rhizodont/measure.hpp"
 
 #include <Eigen/Core>
@@ -18,6 +19,8 @@ nlohmann::ordered_json numbers(const Eigen::Vector3d& v);
 /// A report's text: indented, with an end of line. Names need not be UTF-8; what is not is shown by a replacement
 /// character.
 std::string text_of(const nlohmann::ordered_json& json);
+/// Why something was refused, as the report's "refused" has it: exit code, kind, sentence, and the ids concerned.
+nlohmann::ordered_json refusal_json(const Error& error);
 
 // For `nlohmann::ordered_json(value)`. Lengths in mm, angles in degrees.
 void to_json(nlohmann::ordered_json& json, const CompleteOptions& options);

@@ -168,6 +168,8 @@ const char* kind_of(ErrorCode code) {
   return "fault of the program";
 }
 
+}  // namespace
+
 Json refusal_json(const Error& error) {
   return {{"exit_code", static_cast<int>(error.code())},
           {"kind", kind_of(error.code())},
@@ -175,8 +177,6 @@ Json refusal_json(const Error& error) {
           {"ids_are", error.elements().empty() ? Json(nullptr) : words_for(error.kind())},
           {"ids", error.elements()}};
 }
-
-}  // namespace
 
 std::vector<std::string> all_warnings(const CompletionRecord& record) {
   std::vector<std::string> sentences = record.warnings;

@@ -141,7 +141,7 @@ RawLabels raw_labels(const fs::path& scan, const ScanLabelSource& source, double
     return labels_from_colours(file,
                                reading(source.palette, [](const std::string& text) { return read_palette(text); }));
   if (!source.array.empty() || has_label_array(file)) return labels_from_array(file, source.array);
-  if (is_there(beside(scan))) return reading(beside(scan), from_file);
+  if (!scan.empty() && is_there(beside(scan))) return reading(beside(scan), from_file);
   if (source.find) return found_labels(source, millimetres_per_unit, input);
   throw InputError(
       "Nothing tells this scan's teeth apart: it has no array of labels, no file of labels lies beside it, and there "
@@ -174,6 +174,24 @@ void set_labels(ScanInput& input, const RawLabels& raw, const ScanLabelSource& s
   input.scan.fdi = std::move(labels.fdi);
 }
 
+/// A scan with the labels of the text of a Teeth3DS file; if that is empty, with those that the source leads to.
+ScanInput labelled_scan(const fs::path& path, MeshFile file, std::string sha256, std::string_view teeth3ds,
+                        const ScanLabelSource& source, double millimetres_per_unit) {
+  ScanInput input;
+  input.file = std::move(file);
+  input.sha256 = std::move(sha256);
+  input.notes = std::move(input.file.notes);
+  input.file.notes.clear();
+  const RawLabels raw = teeth3ds.empty() ? raw_labels(path, source, millimetres_per_unit, input)
+                                         : labels_from_teeth3ds(teeth3ds, input.file);
+  try {
+    set_labels(input, raw, source, millimetres_per_unit);
+  } catch (const InputError& error) {
+    throw in_terms_of_file(error, input.file);
+  }
+  return input;
+}
+
 }  // namespace
 
 ScanInput read_scan(const fs::path& path, const ScanLabelSource& source, double millimetres_per_unit) {
@@ -184,20 +202,17 @@ ScanInput read_scan(const fs::path& path, const ScanLabelSource& source, double 
     if (given > 0) throw UsageError("The crowns of a folder have their numbers in their names.");
     return scan_of_folder(path);
   }
-  ScanInput input;
-  input.file = reading(path, [&](const std::string& bytes) {
-    input.sha256 = sha256_of_bytes(bytes);
+  std::string sha256;
+  MeshFile file = reading(path, [&](const std::string& bytes) {
+    sha256 = sha256_of_bytes(bytes);
     return read_mesh(bytes, path);
   });
-  input.notes = input.file.notes;
-  input.file.notes.clear();
-  const RawLabels raw = raw_labels(path, source, millimetres_per_unit, input);
-  try {
-    set_labels(input, raw, source, millimetres_per_unit);
-  } catch (const InputError& error) {
-    throw in_terms_of_file(error, input.file);
-  }
-  return input;
+  return labelled_scan(path, std::move(file), std::move(sha256), {}, source, millimetres_per_unit);
+}
+
+ScanInput scan_of_file(MeshFile file, std::string sha256, std::string_view teeth3ds, const ScanLabelSource& source,
+                       double millimetres_per_unit) {
+  return labelled_scan({}, std::move(file), std::move(sha256), teeth3ds, source, millimetres_per_unit);
 }
 
 std::vector<fs::path> files_of_scan(const fs::path& scan, const ScanLabelSource& source) {

@@ -13,6 +13,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rhizodont {
@@ -50,6 +51,11 @@ struct ScanInput {
 /// @param millimetres_per_unit  of the scan: what is too small for a tooth is told in mm. The scan keeps its unit
 ScanInput read_scan(const std::filesystem::path& scan, const ScanLabelSource& source = {},
                     double millimetres_per_unit = 1);
+
+/// The same of a scan that was read already, without looking at any file.
+/// @param teeth3ds  the text of a Teeth3DS file; empty: the labels are the scan's own array
+ScanInput scan_of_file(MeshFile file, std::string sha256, std::string_view teeth3ds = {},
+                       const ScanLabelSource& source = {}, double millimetres_per_unit = 1);
 
 /// The files that `read_scan` will read.
 std::vector<std::filesystem::path> files_of_scan(const std::filesystem::path& scan, const ScanLabelSource& source);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "rhizodont/arch.hpp"
 
+#include "arch/arch_memory.hpp"
 #include "common/temporary_folder.hpp"
 #include "mesh/closest_point.hpp"
 #include "rhizodont/check.hpp"
@@ -83,6 +84,36 @@ TEST(CompleteArch, EveryToothKeepsThePromisesAndRefersToItsCrown) {
     EXPECT_GT(axes.root.direction.dot(axes.crown.direction), 0.8) << tooth.fdi;
     EXPECT_GT((axes.root.to - axes.root.from).norm(), 4) << tooth.fdi;
   }
+}
+
+void expect_same(const CompletedArch& a, const CompletedArch& b) {
+  ASSERT_EQ(a.teeth.size(), b.teeth.size());
+  for (std::size_t i = 0; i < a.teeth.size(); ++i) {
+    ASSERT_EQ(a.teeth[i].tooth.has_value(), b.teeth[i].tooth.has_value());
+    EXPECT_EQ(a.teeth[i].refusal, b.teeth[i].refusal);
+    if (!a.teeth[i].tooth) continue;
+    EXPECT_EQ(a.teeth[i].tooth->mesh.vertices, b.teeth[i].tooth->mesh.vertices) << a.teeth[i].fdi;
+    EXPECT_EQ(a.teeth[i].tooth->mesh.triangles, b.teeth[i].tooth->mesh.triangles);
+    EXPECT_EQ(a.teeth[i].clearance, b.teeth[i].clearance);
+  }
+}
+
+TEST(CompleteArch, MemoryGivesTheVerySame) {
+  const LabelledScan scan = row_of({{"crown_36.stl", 36}, {"crown_34.ply", 34}, {"crown_36.stl", 75}});
+  ArchMemory memory;
+  ArchOptions options;
+  options.tooth.e = 1;
+  const CompletedArch first = complete_arch(scan, models(), options, {}, memory);
+  EXPECT_EQ(memory.teeth.size(), 3U);
+  expect_same(complete_arch(scan, models(), options, {}, memory), first);
+  options.root_lengths[36] = 11;
+  expect_same(complete_arch(scan, models(), options, {}, memory), complete_arch(scan, models(), options));
+  LabelledScan other = scan;
+  for (int& label : other.fdi) label = label == 34 ? 35 : label;
+  expect_same(complete_arch(other, models(), options, {}, memory), complete_arch(other, models(), options));
+  options.root_lengths = {};
+  options.tooth.e = 0.8;
+  expect_same(complete_arch(other, models(), options, {}, memory), complete_arch(other, models(), options));
 }
 
 TEST(CompleteArch, IsTheSameForAnyNumberOfThreads) {
