@@ -332,12 +332,14 @@ void heed_measured(std::vector<ToothOfArch>& teeth, const Prepared& prepared, co
     expected[tooth.fdi] = {root.length_mm, std::max(deviation, 0.1)};
   }
   std::map<int, double> measured;
-  for (const auto& [fdi, mm] : options.root_lengths) {
-    const auto found = std::find_if(teeth.begin(), teeth.end(), [&](const ToothOfArch& t) { return t.fdi == fdi; });
+  for (const auto& length : options.root_lengths) {
+    const auto found =
+        std::find_if(teeth.begin(), teeth.end(), [&](const ToothOfArch& t) { return t.fdi == length.first; });
     if (found->tooth) {
-      measured[fdi] = mm;
+      measured.insert(length);
     } else {
-      notes.push_back(fmt::format("The root length given for tooth {} tells nothing: the tooth has no root.", fdi));
+      notes.push_back(
+          fmt::format("The root length given for tooth {} tells nothing: the tooth has no root.", length.first));
     }
   }
   const std::map<int, LengthExpectation> lengths = given_measured(expected, measured);

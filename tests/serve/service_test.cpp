@@ -283,7 +283,12 @@ TEST_F(ServiceTest, MetricsCountAndTheLogNamesNobody) {
   const std::string job =
       start({{"scan", send(sample_bytes("crown_34.ply"), "Mustermann_Max_34.ply")}, {"options", {{"e_mm", 1}}}});
   ended(job);
-  const std::string metrics = get("/metrics")->body;
+  // A job is counted when its worker is done with it, a moment after it says that it has ended.
+  std::string metrics;
+  for (int tries = 0; tries < 200 && metrics.find("outcome=\"done\"") == std::string::npos; ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(25));
+    metrics = get("/metrics")->body;
+  }
   for (const char* line : {"rhizodont_requests_total{route=\"/api/v1/scans\",status=\"201\"} 1",
                            "rhizodont_jobs_total{kind=\"tooth\",outcome=\"done\"} 1", "rhizodont_jobs_kept 1",
                            "rhizodont_resident_bytes "})
