@@ -6,7 +6,7 @@
 # many teeth have roots, how many of those `rhizodont check` confirms, which roots still run into a neighbour, and
 # each refusal with its reason.
 # usage: judge_arches.sh [DATA=../shared/data]
-# Of DATA: arches/*.ply with labels beside them, crowns/patient* (both jaws, a crown a file), lower_scan. Needs a built
+# Of DATA: arches/*.ply with labels beside them (else their teeth are found), crowns/patient* (both jaws, a crown a file), lower_scan. Needs a built
 # program (BUILD=build). OUT: keeps the results there. OPTIONS: more for rhizodont arch.
 set -euo pipefail
 shopt -s nullglob
@@ -27,9 +27,11 @@ for patient in "$data"/crowns/patient*; do
     inputs+=("$folder")
   done
 done
-mkdir -p "$out/in/lower_scan"
-for crown in "$data"/lower_scan/crown_??.ply; do ln -sf "$crown" "$out/in/lower_scan/"; done
-inputs+=("$out/in/lower_scan")
+for crown in "$data"/lower_scan/crown_??.ply; do
+  mkdir -p "$out/in/lower_scan"
+  ln -sf "$crown" "$out/in/lower_scan/"
+done
+[ ! -d "$out/in/lower_scan" ] || inputs+=("$out/in/lower_scan")
 
 echo "| arch | teeth | with roots | checked | roots in a neighbour |"
 echo "|---|---|---|---|---|"

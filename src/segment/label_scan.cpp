@@ -140,7 +140,8 @@ ToothInstances numbered_only(const ToothInstances& found, const ArchNumbers& num
 constexpr std::size_t least_teeth = 3;
 
 void require_arch(const std::vector<ToothNumber>& teeth, bool a_person_knows) {
-  if (teeth.empty()) throw InputError("No tooth was found: this is no scan of an arch of teeth.");
+  if (teeth.empty())
+    throw InputError("No tooth was found: this is no scan of an arch of teeth. A single crown goes to complete.");
   if (teeth.size() < least_teeth)
     throw InputError(
         fmt::format("Only {} {} found: this is no scan of an arch of teeth. A single crown goes to complete.",

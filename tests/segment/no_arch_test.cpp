@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "networks/scan_sample.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/segment.hpp"
+#include "segment/label_scan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -71,7 +73,38 @@ TEST(NoArch, RowsOfKnobsAreRefused) {
   expect_refused(
       sheet(140, 110,
             [](double s, double t) { return Point(70 * s, 55 * t, 1.5 * std::sin(40 * s) * std::cos(35 * t)); }),
-      "not in the order of an arch");
+      "no scan of an arch");
+}
+
+TEST(NoArch, ARowWithoutNumbersIsRefused) {
+  // Twelve knobs 8 mm apart that the network takes for teeth, any number as likely as any other.
+  constexpr double apart = 8;
+  const TriangleMesh mesh = sheet(200, 24, [](double s, double t) {
+    return Point(12 * apart * s, 10 * t, 3 * std::pow(std::sin(12 * std::numbers::pi * s), 2));
+  });
+  TeethReading reading;
+  reading.cloud = scan_points(mesh, reading.frame).cloud;
+  reading.pyramid = scan_pyramid(reading.cloud, {});
+  reading.said.borders.assign(reading.size(), 0);
+  for (std::size_t i = 0; i < reading.size(); ++i) {
+    reading.said.kinds.push_back(0.04F);
+    for (int kind = 1; kind < scan_kind_count; ++kind) reading.said.kinds.push_back(0.06F);
+    const Eigen::Vector3d place = reading.place(i);
+    const Eigen::Vector3d to(apart * (std::floor(place.x() / apart) + 0.5) - place.x(), 5 - place.y(), 2 - place.z());
+    for (const double x : to) reading.said.offsets.push_back(static_cast<float>(x));
+  }
+  const ArchModel model = load_arch_model(source / "models/arch.safetensors");
+  try {
+    label_scan(mesh, reading, model, {});
+    ADD_FAILURE() << "numbers were given";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("not in the order of an arch"), std::string::npos) << error.what();
+  }
+  // A person who names one knows better.
+  SegmentOptions options;
+  options.jaw = Jaw::lower;
+  options.teeth[36] = Point(apart * 2.5, 5, 3);
+  EXPECT_NO_THROW(label_scan(mesh, reading, model, options));
 }
 
 TEST(NoArch, AnImpressionOfTeethIsRefused) {
