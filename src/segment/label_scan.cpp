@@ -64,14 +64,21 @@ JawDecision decide_jaw(const TeethReading& reading, const ToothInstances& found,
     decision.confidence = 1;
     decision.reason = fmt::format("The {} jaw, as was said.", jaw_name(decision.jaw));
     decision.numbers = number_teeth(found.teeth, decision.jaw, arch, numbering);
+    const JawDecision own = decide_jaw(reading, found, arch, {}, {});
+    constexpr double sure = 0.9;
+    if (own.jaw != decision.jaw && own.confidence > sure)
+      decision.reason += fmt::format(" By itself it would be taken for the {} one ({:.0f} %): is that right?",
+                                     jaw_name(own.jaw), 100 * own.confidence);
     return decision;
   }
-  if (!numbering.given.empty()) {
-    const int fdi = numbering.given.begin()->second;
+  // What a person says of teeth is of the jaw that they are in.
+  std::set<int> named = options.missing;
+  for (const auto& [tooth, fdi] : numbering.given) named.insert(fdi);
+  if (!named.empty() && jaw_of_fdi(*named.begin()) == jaw_of_fdi(*named.rbegin())) {
     SegmentOptions stated = options;
-    stated.jaw = jaw_of_fdi(fdi);
+    stated.jaw = jaw_of_fdi(*named.begin());
     decision = decide_jaw(reading, found, arch, stated, numbering);
-    decision.reason = fmt::format("The {} jaw, for tooth {} was said to be there.", jaw_name(decision.jaw), fdi);
+    decision.reason = fmt::format("Tooth {} was said to be there or missing. {}", *named.begin(), decision.reason);
     return decision;
   }
   ArchNumbers upper = number_teeth(found.teeth, Jaw::upper, arch, numbering);
@@ -140,12 +147,13 @@ ToothInstances numbered_only(const ToothInstances& found, const ArchNumbers& num
 constexpr std::size_t least_teeth = 3;
 
 void require_arch(const std::vector<ToothNumber>& teeth, bool a_person_knows) {
+  constexpr const char* what_else =
+      "A single crown goes to complete; a scan whose triangles face inwards is to be turned inside out first.";
   if (teeth.empty())
-    throw InputError("No tooth was found: this is no scan of an arch of teeth. A single crown goes to complete.");
+    throw InputError(fmt::format("No tooth was found: this is no scan of an arch of teeth. {}", what_else));
   if (teeth.size() < least_teeth)
-    throw InputError(
-        fmt::format("Only {} {} found: this is no scan of an arch of teeth. A single crown goes to complete.",
-                    teeth.size(), teeth.size() == 1 ? "tooth was" : "teeth were"));
+    throw InputError(fmt::format("Only {} {} found: this is no scan of an arch of teeth. {}", teeth.size(),
+                                 teeth.size() == 1 ? "tooth was" : "teeth were", what_else));
   // A surface of knobs has some teeth, too, but no numbers: those of generated arches, parts and few teeth among them,
   // are sure to 70 % and more in the mean.
   constexpr double least_sure = 0.4;

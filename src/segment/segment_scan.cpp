@@ -4,7 +4,6 @@
 
 #include "base/option_range.hpp"
 #include "base/with_threads.hpp"
-#include "mesh/geometry.hpp"
 #include "networks/scan_network.hpp"
 #include "rhizodont/error.hpp"
 #include "segment/arch_model.hpp"
@@ -13,6 +12,7 @@
 #include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 
@@ -30,7 +30,8 @@ void require_in_range(const SegmentOptions& options) {
                                           {"threads", options.threads, OptionRange::at_least(0)}});
   for (const auto& [fdi, place] : options.teeth)
     if (!is_permanent_tooth(fdi) || !place.allFinite())
-      throw UsageError(fmt::format("{} with its place is no permanent tooth.", fdi));
+      throw UsageError(is_permanent_tooth(fdi) ? fmt::format("The place of tooth {} is no place.", fdi)
+                                               : fmt::format("{} is no permanent tooth.", fdi));
   for (const int fdi : options.missing)
     if (!is_permanent_tooth(fdi)) throw UsageError(fmt::format("{} is no permanent tooth.", fdi));
 }
@@ -55,8 +56,11 @@ TriangleMesh usable(const TriangleMesh& scan, double millimetres_per_unit) {
 /// A scan of a jaw is some centimetres across.
 void require_size(const TriangleMesh& scan) {
   constexpr double least_mm = 15, most_mm = 160;
-  const double across = bounding_box(scan.vertices).diagonal().norm();
   if (scan.triangles.empty()) throw InputError("The scan has no triangles.");
+  Eigen::AlignedBox3d box;  // of what has a surface
+  for (const Triangle& t : scan.triangles)
+    for (const std::int32_t v : t) box.extend(scan.vertices[static_cast<std::size_t>(v)]);
+  const double across = box.diagonal().norm();
   if (across < least_mm)
     throw InputError(
         fmt::format("This is {:.2f} mm across: too small for a jaw. A single crown goes to complete; if the scan is in "

@@ -87,5 +87,21 @@ TEST(LabelScan, ReadsGeneratedArchesWhereTheNetworkIsGood) {
   EXPECT_EQ(sum.jaws_right, sum.scans);
 }
 
+TEST(LabelScan, WhatAPersonSaysOfTeethTellsTheJawAndAWrongJawIsAskedAbout) {
+  if (!std::filesystem::exists(data / "crowns" / "ssm")) GTEST_SKIP() << "no ../shared/data";
+  const GeneratedArch arch = sample_arch(load_arch_family(data), first_seed);
+  const TeethReading reading = good_reading(arch, first_seed);
+  const bool upper = arch.jaw == Jaw::upper;
+  SegmentOptions missing;
+  for (const int number : {6, 7, 8})
+    for (const int quadrant : {upper ? 10 : 30, upper ? 20 : 40}) missing.missing.insert(quadrant + number);
+  EXPECT_EQ(label_scan(arch.scan, reading, mean_arch(), missing).jaw, arch.jaw);
+  SegmentOptions wrong;
+  wrong.jaw = upper ? Jaw::lower : Jaw::upper;
+  const SegmentedScan other = label_scan(arch.scan, reading, mean_arch(), wrong);
+  EXPECT_EQ(other.jaw, *wrong.jaw);
+  EXPECT_NE(other.jaw_reason.find("is that right?"), std::string::npos) << other.jaw_reason;
+}
+
 }  // namespace
 }  // namespace rhizodont
