@@ -4,6 +4,7 @@
 
 #include "io/scan_labels.hpp"
 #include "rhizodont/error.hpp"
+#include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
 #include <Eigen/Geometry>
@@ -101,6 +102,13 @@ double share(std::size_t part, std::size_t whole) {
   return whole == 0 ? 1 : static_cast<double>(part) / static_cast<double>(whole);
 }
 
+/// Milk teeth as the permanent ones of their places.
+std::vector<int> by_place(std::vector<int> fdi) {
+  for (int& number : fdi)
+    if (is_milk_tooth(number)) number -= 40;
+  return fdi;
+}
+
 }  // namespace
 
 std::size_t SegmentationFigures::right() const {
@@ -114,11 +122,12 @@ double SegmentationFigures::mean_overlap() const {
   return teeth.empty() ? 1 : sum / static_cast<double>(teeth.size());
 }
 
-SegmentationFigures segmentation_figures(const TriangleMesh& scan, const std::vector<int>& truth,
-                                         const std::vector<int>& found) {
+SegmentationFigures segmentation_figures(const TriangleMesh& scan, const std::vector<int>& true_labels,
+                                         const std::vector<int>& found_labels) {
   const std::size_t n = scan.vertices.size();
-  if (truth.size() != n || found.size() != n)
+  if (true_labels.size() != n || found_labels.size() != n)
     throw UsageError("There must be as many labels as the scan has vertices.");
+  const std::vector<int> truth = by_place(true_labels), found = by_place(found_labels);
   SegmentationFigures figures;
   std::map<std::pair<int, int>, std::size_t> common;
   std::size_t tooth_or_gum = 0;

@@ -45,9 +45,11 @@ struct SegmentationFigures {
 };
 
 /// Strict figures: a tooth is right if it overlaps what bears its number by more than half. Labels are FDI numbers per
-/// vertex, 0 gum. Throws UsageError for labels of another length than the vertices.
-SegmentationFigures segmentation_figures(const TriangleMesh& scan, const std::vector<int>& truth,
-                                         const std::vector<int>& found);
+/// vertex, 0 gum; a milk tooth counts as the permanent one of its place (55 as 15), as what is found has it and as the
+/// children's scans of 3DTeethSeg22 that are at hand are labelled. Throws UsageError for labels of another length than
+/// the vertices.
+SegmentationFigures segmentation_figures(const TriangleMesh& scan, const std::vector<int>& true_labels,
+                                         const std::vector<int>& found_labels);
 
 /// Figures of many scans.
 struct SegmentationSummary {

@@ -32,6 +32,15 @@ TEST(SegmentationFigures, OfTheTruthAreOne) {
   EXPECT_EQ(f.mean_overlap(), 1);
 }
 
+TEST(SegmentationFigures, MilkTeethCountByTheirPlaces) {
+  const SegmentationFigures f =
+      segmentation_figures(strip(), {55, 55, 55, 0, 0, 65, 65, 65}, {15, 15, 15, 0, 0, 25, 25, 25});
+  EXPECT_EQ(f.right(), 2U);
+  EXPECT_EQ(f.faces_right, 1);
+  EXPECT_FALSE(
+      segmentation_figures(strip(), {55, 55, 55, 0, 0, 0, 0, 0}, {14, 14, 14, 0, 0, 0, 0, 0}).teeth[0].is_right());
+}
+
 TEST(SegmentationFigures, CountedByHand) {
   const std::vector<int> truth{11, 11, 11, 0, 0, 21, 21, 21}, found{11, 11, 0, 0, 22, 22, 22, 22};
   const SegmentationFigures f = segmentation_figures(strip(), truth, found);
