@@ -5,13 +5,13 @@
 #include "rhizodont/io.hpp"
 #include "rhizodont/segment.hpp"
 #include "segment/label_scan.hpp"
+#include "segment/sheet.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -19,21 +19,9 @@
 namespace rhizodont {
 namespace {
 
-const std::filesystem::path source(RHIZODONT_SOURCE_DIR);
+using test::sheet;
 
-/// A sheet over the unit square.
-TriangleMesh sheet(int columns, int rows, const std::function<Point(double, double)>& at) {
-  TriangleMesh mesh;
-  for (int j = 0; j < rows; ++j)
-    for (int i = 0; i < columns; ++i) mesh.vertices.push_back(at(i / (columns - 1.0), j / (rows - 1.0)));
-  for (int j = 0; j + 1 < rows; ++j)
-    for (int i = 0; i + 1 < columns; ++i) {
-      const int v = columns * j + i;
-      mesh.triangles.push_back({v, v + 1, v + columns + 1});
-      mesh.triangles.push_back({v, v + columns + 1, v + columns});
-    }
-  return mesh;
-}
+const std::filesystem::path source(RHIZODONT_SOURCE_DIR);
 
 void expect_refused(const TriangleMesh& mesh, const std::string& words) {
   const SegmentModels models = SegmentModels::load(source / "models");

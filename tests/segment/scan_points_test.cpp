@@ -3,8 +3,11 @@
 #include "segment/scan_points.hpp"
 
 #include "base/float_bits.hpp"
+#include "mesh/adjacency.hpp"
+#include "mesh/append_mesh.hpp"
 #include "networks/cloud_grid.hpp"
 #include "rhizodont/error.hpp"
+#include "segment/sheet.hpp"
 
 #include <Eigen/Geometry>
 
@@ -17,26 +20,16 @@ namespace {
 
 /// 30 mm x 20 mm of hills; with a flat base around them all if `closed`.
 TriangleMesh hills(bool closed) {
-  constexpr int columns = 61, rows = 41;
-  TriangleMesh mesh;
-  const auto add = [&](double height_of_hills, double depth, bool flipped) {
-    const int first = static_cast<int>(mesh.vertices.size());
-    for (int j = 0; j < rows; ++j)
-      for (int i = 0; i < columns; ++i) {
-        const double x = 0.5 * i, y = 0.5 * j;
-        const bool rim = i == 0 || j == 0 || i + 1 == columns || j + 1 == rows;
-        const double z = rim ? 0 : height_of_hills * (2 + std::sin(0.9 * x + 0.2) * std::cos(0.7 * y)) - depth;
-        mesh.vertices.push_back(Point(x, y + 0.01 * x * x, z));
-      }
-    for (int j = 0; j + 1 < rows; ++j)
-      for (int i = 0; i + 1 < columns; ++i) {
-        const int v = first + columns * j + i;
-        for (const Triangle& t : {Triangle{v, v + 1, v + columns + 1}, Triangle{v, v + columns + 1, v + columns}})
-          mesh.triangles.push_back(flipped ? Triangle{t[0], t[2], t[1]} : t);
-      }
+  const auto surface = [](double height_of_hills, double depth) {
+    return test::sheet(61, 41, [&](double s, double t) {
+      const double x = 30 * s, y = 20 * t;
+      const bool rim = s == 0 || t == 0 || s == 1 || t == 1;
+      const double z = rim ? 0 : height_of_hills * (2 + std::sin(0.9 * x + 0.2) * std::cos(0.7 * y)) - depth;
+      return Point(x, y + 0.01 * x * x, z);
+    });
   };
-  add(1.5, 0, false);
-  if (closed) add(0, 6, true);
+  TriangleMesh mesh = surface(1.5, 0);
+  if (closed) append_mesh(mesh, flipped(surface(0, 6)));
   return mesh;
 }
 

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "segment/tooth_borders.hpp"
 
+#include "segment/sheet.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,19 +15,10 @@ constexpr int side = 41;
 
 /// 20 mm x 20 mm with a groove along y at x = groove.
 TriangleMesh grooved(double groove) {
-  TriangleMesh mesh;
-  for (int j = 0; j < side; ++j)
-    for (int i = 0; i < side; ++i) {
-      const double x = 0.5 * i, y = 0.5 * j;
-      mesh.vertices.push_back(Point(x, y, -1.2 * std::exp(-(x - groove) * (x - groove))));
-    }
-  for (int j = 0; j + 1 < side; ++j)
-    for (int i = 0; i + 1 < side; ++i) {
-      const int v = side * j + i;
-      mesh.triangles.push_back({v, v + 1, v + side + 1});
-      mesh.triangles.push_back({v, v + side + 1, v + side});
-    }
-  return mesh;
+  return test::sheet(side, side, [&](double s, double t) {
+    const double x = 20 * s, y = 20 * t;
+    return Point(x, y, -1.2 * std::exp(-(x - groove) * (x - groove)));
+  });
 }
 
 /// A reading of it: tooth 0 left of `border`, tooth 1 right of it, less and less surely towards it.
