@@ -10,6 +10,8 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include <functional>
+#include <map>
 #include <string>
 
 namespace rhizodont {
@@ -21,6 +23,13 @@ nlohmann::ordered_json numbers(const Eigen::Vector3d& v);
 std::string text_of(const nlohmann::ordered_json& json);
 /// Why something was refused, as the report's "refused" has it: exit code, kind, sentence, and the ids concerned.
 nlohmann::ordered_json refusal_json(const Error& error);
+
+/// What is to be done with the value of each name.
+using JsonTakers = std::map<std::string, std::function<void(const nlohmann::ordered_json&)>>;
+/// Hands each member of an object to what takes it. Throws UsageError where it is no object, for a name that nothing
+/// takes ("SUBJECT VERB no ..."), and where a taker throws nlohmann::json::exception.
+void take_members(const nlohmann::ordered_json& json, const std::string& subject, const char* verb,
+                  const JsonTakers& takers);
 
 // For `nlohmann::ordered_json(value)`. Lengths in mm, angles in degrees.
 void to_json(nlohmann::ordered_json& json, const CompleteOptions& options);

@@ -71,7 +71,7 @@ SolidCheck read_solid(const Json& json) {
 }
 
 /// How the value of each name of a JSON object is taken.
-using Takers = std::map<std::string, std::function<void(const Json&)>>;
+using Takers = JsonTakers;
 
 template <class T>
 auto taker(T& into) {
@@ -81,19 +81,6 @@ auto taker(T& into) {
 template <class T>
 auto taker(std::optional<T>& into) {
   return [&into](const Json& value) { into = value.is_null() ? std::nullopt : std::optional<T>(value.get<T>()); };
-}
-
-void take_options(const Json& json, const std::string& what, const Takers& takers) {
-  if (!json.is_object()) throw UsageError(fmt::format("{} must be a JSON object.", what));
-  for (const auto& [name, value] : json.items()) {
-    const auto taker = takers.find(name);
-    if (taker == takers.end()) throw UsageError(fmt::format("{} have no \"{}\".", what, name));
-    try {
-      taker->second(value);
-    } catch (const Json::exception&) {
-      throw UsageError(fmt::format("{}: the value of \"{}\" cannot be {}.", what, name, value.dump()));
-    }
-  }
 }
 
 /// A choice between words.
@@ -131,6 +118,19 @@ T figures_from(std::string_view text, const char* what) {
 }
 
 }  // namespace
+
+void take_members(const Json& json, const std::string& subject, const char* verb, const JsonTakers& takers) {
+  if (!json.is_object()) throw UsageError(fmt::format("{} must be a JSON object.", subject));
+  for (const auto& [name, value] : json.items()) {
+    const auto taker = takers.find(name);
+    if (taker == takers.end()) throw UsageError(fmt::format("{} {} no \"{}\".", subject, verb, name));
+    try {
+      taker->second(value);
+    } catch (const Json::exception&) {
+      throw UsageError(fmt::format("{}: the value of \"{}\" cannot be {}.", subject, name, value.dump()));
+    }
+  }
+}
 
 void from_json(const Json& json, QualityFigures& figures) {
   read(json, "triangles", figures.triangles);
@@ -198,7 +198,7 @@ CompleteOptions options_from_json(std::string_view text) {
     options.directions.reset();
     if (value.is_null()) return;
     ToothDirections& directions = options.directions.emplace();
-    take_options(value, "The tooth's directions",
+    take_members(value, "The tooth's directions", "have",
                  {{"occlusal", direction(directions.occlusal)}, {"buccal", direction(directions.buccal)}});
   };
   const auto take_skirt = [&](const Json& value) {
@@ -217,7 +217,7 @@ CompleteOptions options_from_json(std::string_view text) {
       {"millimetres_per_unit", taker(options.millimetres_per_unit)},
       {"transition_mm", taker(options.transition)},
       {"directions", take_directions},
-      {"steering", [&](const Json& value) { take_options(value, "The options of steering", steering_takers); }},
+      {"steering", [&](const Json& value) { take_members(value, "The options of steering", "have", steering_takers); }},
       {"threads", whole_number(options.threads)}};
   Json json;
   try {
@@ -225,7 +225,7 @@ CompleteOptions options_from_json(std::string_view text) {
   } catch (const Json::exception&) {
     throw UsageError("The options are no JSON.");
   }
-  take_options(json, "The options", takers);
+  take_members(json, "The options", "have", takers);
   return options;
 }
 

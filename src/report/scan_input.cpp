@@ -144,9 +144,9 @@ RawLabels raw_labels(const fs::path& scan, const ScanLabelSource& source, double
   if (!scan.empty() && is_there(beside(scan))) return reading(beside(scan), from_file);
   if (source.find) return found_labels(source, millimetres_per_unit, input);
   throw InputError(
-      "Nothing tells this scan's teeth apart: it has no array of labels, no file of labels lies beside it, and there "
-      "is "
-      "no model to find teeth with (segment.safetensors). Name a file (--labels FILE.json), an array (--label-array "
+      "Nothing tells this scan's teeth apart: it has no array of labels, no file of labels lies beside it, and no "
+      "model to find teeth with is there (segment.safetensors). Name a file (--labels FILE.json), an array "
+      "(--label-array "
       "NAME), or what its colours stand for (--palette FILE).");
 }
 

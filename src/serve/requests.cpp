@@ -20,7 +20,7 @@ namespace rhizodont::serve {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using Takers = std::map<std::string, std::function<void(const Json&)>>;
+using Takers = JsonTakers;
 
 constexpr int deepest = 8;
 
@@ -29,18 +29,6 @@ Json object_from(std::string_view text, const char* what) {
   Json json = Json::parse(text);
   if (!json.is_object()) throw UsageError(fmt::format("{} must be a JSON object.", what));
   return json;
-}
-
-void take(const Json& json, const char* what, const Takers& takers) {
-  for (const auto& [name, value] : json.items()) {
-    const auto taker = takers.find(name);
-    if (taker == takers.end()) throw UsageError(fmt::format("{} has no \"{}\".", what, name));
-    try {
-      taker->second(value);
-    } catch (const Json::exception&) {
-      throw UsageError(fmt::format("{}: the value of \"{}\" cannot be {}.", what, name, value.dump()));
-    }
-  }
 }
 
 int tooth_number(const std::string& number) {
@@ -87,20 +75,20 @@ LabelCorrection correction_from(const Json& json) {
     };
   };
   if (!json.is_object()) throw UsageError("A correction must be a JSON object.");
-  take(json, "A correction",
-       {{"number", of_kind(Kind::number)},
-        {"split", of_kind(Kind::split)},
-        {"remove", of_kind(Kind::remove)},
-        {"merge",
-         [&](const Json& v) {
-           const auto teeth = v.get<std::array<int, 2>>();
-           of_kind(Kind::merge)(teeth[0]);
-           correction.other = tooth_number(std::to_string(teeth[1]));
-         }},
-        {"at", [&](const Json& v) {
-           correction.at = place_from(v);
-           has_place = true;
-         }}});
+  take_members(json, "A correction", "has",
+               {{"number", of_kind(Kind::number)},
+                {"split", of_kind(Kind::split)},
+                {"remove", of_kind(Kind::remove)},
+                {"merge",
+                 [&](const Json& v) {
+                   const auto teeth = v.get<std::array<int, 2>>();
+                   of_kind(Kind::merge)(teeth[0]);
+                   correction.other = tooth_number(std::to_string(teeth[1]));
+                 }},
+                {"at", [&](const Json& v) {
+                   correction.at = place_from(v);
+                   has_place = true;
+                 }}});
   const bool needs_place = correction.kind == Kind::number || correction.kind == Kind::split;
   if (kinds != 1 || has_place != needs_place)
     throw UsageError("A correction is one of number and split, each with a place (at), merge and remove.");
@@ -182,7 +170,7 @@ SentJob read_sent_job(std::string_view text) {
   const bool is_arch = json.contains("kind") && json["kind"] == "arch";
   Takers all = of_both;
   if (is_arch) all.merge(of_arch);
-  take(json, is_arch ? "A job of an arch" : "A job of a tooth", all);
+  take_members(json, is_arch ? "A job of an arch" : "A job of a tooth", "has", all);
   if (job.scan.empty()) throw UsageError("A job needs a scan.");
   if (is_arch) {
     arch.tooth = tooth_of_arch(options);
