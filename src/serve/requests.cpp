@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "serve/requests.hpp"
 
+#include "report/json.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/json.hpp"
 #include "teeth/fdi.hpp"
