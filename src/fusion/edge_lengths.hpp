@@ -7,6 +7,7 @@
 
 #include <Eigen/Geometry>
 
+#include <cstddef>
 #include <vector>
 
 namespace rhizodont {
@@ -27,10 +28,17 @@ class EdgeLengths {
     Point middle = Point::Zero();
     double length = 0;  // mm
   };
+  /// Sources that follow each other along the border and so lie together.
+  struct Group {
+    std::size_t begin = 0, end = 0;
+    Eigen::AlignedBox3d box;
+    double shortest = 0, longest = 0;  // mm
+  };
   double root_, growth_, shrinkage_;
   double reach_ = 0;  // mm from the border's box: farther off the root's length holds
   Eigen::AlignedBox3d box_;
   std::vector<Source> sources_;
+  std::vector<Group> groups_;
 };
 
 }  // namespace rhizodont

@@ -44,11 +44,10 @@ FittedPatch::FittedPatch(const JoinedTooth& tooth, const SurfaceWalk& walk, cons
       size_(tooth.mesh.vertices.size(), 0),
       offset_(tooth.mesh.vertices.size(), Eigen::Vector3d::Zero()),
       frozen_(tooth.mesh.vertices.size(), 0) {
-  const NearestVertexIndex index(walk.surface().vertices);
   for (std::size_t v = 0; v < place_.size(); ++v) {
     if (mesh_.leaving(static_cast<int>(v)) < 0) continue;
     const Point& p = mesh_.points[v];
-    const SurfacePlace found = walk.closest(p, walk.triangle_at(index.nearest(p).index));
+    const SurfacePlace found = walk.closest(p, walk.triangle_near(p));
     place_[v] = found.triangle;
     offset_[v] = p - found.point;
   }

@@ -9,7 +9,6 @@
 #include "base/stopwatch.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
-#include "mesh/nearest_vertex.hpp"
 #include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
 
@@ -25,11 +24,10 @@ namespace rhizodont {
 namespace {
 
 double border_gap(const TriangleMesh& crown, const CrownBorder& border, const SurfaceWalk& walk) {
-  const NearestVertexIndex index(walk.surface().vertices);
   std::vector<double> distances;
   for (const auto& [v, next] : border.half_edges) {
     const Point& p = crown.vertices[static_cast<std::size_t>(v)];
-    distances.push_back((walk.closest(p, walk.triangle_at(index.nearest(p).index)).point - p).norm());
+    distances.push_back((walk.closest(p, walk.triangle_near(p)).point - p).norm());
   }
   const auto rank = distances.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(distances.size()));
   std::nth_element(distances.begin(), rank, distances.end());
@@ -42,6 +40,7 @@ struct Ground {
   const CrownBorder& border;
   const TriangleMesh& surface;
   const Eigen::Vector3d& growth_axis;
+  DelaunayMesh delaunay;  // of the crown
   CrownDistances distances;
   SurfaceWalk walk;
   EdgeLengths lengths;
@@ -53,6 +52,7 @@ struct Ground {
         border(prepared.border),
         surface(guiding_surface),
         growth_axis(axis),
+        delaunay(make_delaunay_mesh(crown, options.join.delaunay)),
         distances(crown_distances(surface, prepared)),
         walk(surface),
         lengths(edge_lengths(options.edge_growth, options)),
@@ -82,7 +82,7 @@ void improve_triangles(const Ground& ground, const FuseOptions& options, FusedTo
     JoinedTooth remeshed = fused.tooth;
     const double radius = i * ground.lengths.root();
     const RootRemeshing done = remesh_root(remeshed, ground.walk, ground.lengths, frozen, radius, options.remesh);
-    const auto cuts = self_intersecting_triangles(remeshed.mesh);
+    const auto cuts = self_intersecting_triangles(remeshed.mesh, ground.crown.triangles.size());
     if (cuts.empty()) {
       fused.tooth = std::move(remeshed);
       fused.remeshing = done;
@@ -102,7 +102,7 @@ Joining join(const Ground& ground, const FuseOptions& options, const SeparationO
   const std::vector<Point> root =
       root_sites(ground.walk, is_root, ground.crown, ground.border, ground.lengths, options.sites);
   spent.sites += watch.restart();
-  Joining joining = join_crown_and_root(ground.crown, root, ground.surface, options.join);
+  Joining joining = join_crown_and_root(ground.crown, ground.delaunay, root, ground.surface, options.join);
   spent.joining += watch.restart();
   return joining;
 }

@@ -61,8 +61,8 @@ struct FusedTooth {
 /// Joins crown and guiding surface: separate, choose root vertices, join by the restricted Voronoi diagram, restore the
 /// crown, improve the root's triangles and smooth the transition. Every result is tested for self-intersection; a step
 /// that would break the tooth is left out and said in the warnings. If no closed tooth comes out, the root is started
-/// farther from the crown. `crown` is manifold, one component, its border loops not touching; `growth_axis` a unit
-/// vector to the crown, the root's own if it leans. Throws NoResultError where no attempt gives a closed tooth.
+/// farther from the crown. `crown` is manifold, one component, its border loops not touching, its triangles not cutting
+/// each other; `growth_axis` a unit vector to the crown, the root's own if it leans. Throws NoResultError where no attempt gives a closed tooth.
 FusedTooth fuse_crown_and_root(const PreparedCrown& crown, const TriangleMesh& guiding_surface,
                                const Eigen::Vector3d& growth_axis, const FuseOptions& options = {});
 

@@ -38,8 +38,14 @@ void require_in_range(const JoinOptions& options) {
 
 Joining join_crown_and_root(const TriangleMesh& crown, const std::vector<Point>& root_vertices,
                             const TriangleMesh& guiding_surface, const JoinOptions& options) {
+  return join_crown_and_root(crown, make_delaunay_mesh(crown, options.delaunay), root_vertices, guiding_surface,
+                             options);
+}
+
+Joining join_crown_and_root(const TriangleMesh& crown, const DelaunayMesh& delaunay,
+                            const std::vector<Point>& root_vertices, const TriangleMesh& guiding_surface,
+                            const JoinOptions& options) {
   require_in_range(options);
-  const DelaunayMesh delaunay = make_delaunay_mesh(crown, options.delaunay);
   Joining joining;
   joining.crown_vertices = static_cast<int>(crown.vertices.size());
   joining.steiner_points = static_cast<int>(delaunay.steiner_edges.size());

@@ -41,4 +41,10 @@ struct Joining {
 Joining join_crown_and_root(const TriangleMesh& crown, const std::vector<Point>& root_vertices,
                             const TriangleMesh& guiding_surface, const JoinOptions& options = {});
 
+/// The same for a crown that was made a Delaunay mesh before, by `make_delaunay_mesh(crown, options.delaunay)`: for
+/// who tries several roots.
+Joining join_crown_and_root(const TriangleMesh& crown, const DelaunayMesh& delaunay,
+                            const std::vector<Point>& root_vertices, const TriangleMesh& guiding_surface,
+                            const JoinOptions& options = {});
+
 }  // namespace rhizodont

@@ -3,9 +3,12 @@
 
 #include "fusion/mend_angles.hpp"
 
+#include "mesh/at.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -18,7 +21,11 @@ constexpr double worthwhile = 1e-3;  // radians by which an operation has to imp
 class Mender {
  public:
   Mender(FittedPatch& patch, double crown_weight, MendingBudget& budget)
-      : patch_(patch), crown_weight_(crown_weight), budget_(budget) {}
+      : patch_(patch),
+        crown_weight_(crown_weight),
+        budget_(budget),
+        changed_(patch.mesh().points.size(), 0),
+        given_up_(at(patch.mesh().half_edges() / 3)) {}
 
   /// Works on the triangles with an angle below the bound, worst first; returns the number of operations.
   int round(double bound) {
@@ -36,10 +43,66 @@ class Mender {
   }
 
  private:
+  /// A triangle that could not be improved: after which change, and how many places were tried.
+  struct GivenUp {
+    int change = -1;
+    std::int64_t places = 0;
+  };
+
   const PatchMesh& mesh() const { return patch_.mesh(); }
 
   bool improve(int h) {
-    return improve_by_flip(h) || improve_by_collapse(h) || improve_by_moves(h) || improve_by_split(h);
+    if (GivenUp& given_up = given_up_[at(h / 3)]; is_as_it_was(h, given_up)) {
+      budget_.places -= given_up.places;  // as if they were tried again
+      return false;
+    }
+    const std::int64_t places = budget_.places;
+    if (improve_by_flip(h) || improve_by_collapse(h) || improve_by_moves(h) || improve_by_split(h)) return true;
+    given_up_[at(h / 3)] = {changes_, places - budget_.places};
+    return false;
+  }
+
+  /// Nothing has changed since about the triangle and those over its edges: whatever would be tried fails again.
+  bool is_as_it_was(int h, const GivenUp& given_up) const {
+    if (given_up.change < 0) return false;
+    for (const int k : {h, PatchMesh::next(h), PatchMesh::previous(h)}) {
+      if (changed_[at(mesh().from(k))] > given_up.change) return false;
+      const int over = mesh().opposite(k);
+      if (over >= 0 && changed_[at(mesh().apex(over))] > given_up.change) return false;
+    }
+    return true;
+  }
+
+  /// Notes that the triangles around these vertices have changed, or will now.
+  void note_change(std::initializer_list<int> vertices) {
+    ++changes_;
+    for (const int v : vertices) changed_[at(v)] = changes_;
+  }
+  void note_change_around(int v) {
+    note_change({v});
+    for (const int w : mesh().neighbours(v)) changed_[at(w)] = changes_;
+  }
+
+  void flip(int h) {
+    note_change({mesh().from(h), mesh().to(h), mesh().apex(h), mesh().apex(mesh().opposite(h))});
+    patch_.flip(h);
+  }
+
+  void collapse(int h) {
+    note_change_around(mesh().from(h));
+    patch_.collapse(h);
+  }
+
+  void move(int v, const SurfacePlace& place) {
+    patch_.move(v, place);
+    note_change_around(v);
+  }
+
+  void split(int h) {
+    note_change({mesh().from(h), mesh().to(h), mesh().apex(h), mesh().apex(mesh().opposite(h))});
+    patch_.split(h);
+    changed_.resize(mesh().points.size(), changes_);
+    given_up_.resize(at(mesh().half_edges() / 3));
   }
 
   double weight(int a, int b, int c) const {
@@ -78,7 +141,7 @@ class Mender {
       best = k;
       best_gain = gain;
     }
-    if (best >= 0) patch_.flip(best);
+    if (best >= 0) flip(best);
     return best >= 0;
   }
 
@@ -93,7 +156,7 @@ class Mender {
         best = way;
         best_gain = gain;
       }
-    if (best >= 0) patch_.collapse(best);
+    if (best >= 0) collapse(best);
     return best >= 0;
   }
 
@@ -120,7 +183,14 @@ class Mender {
   }
 
   bool improve_by_move(int v, double step) {
-    const double before = smallest_around(v);
+    int worst = -1;  // the triangle with the smallest angle: most places fail there already
+    double before = 4 * crown_weight_;
+    mesh().around(v, [&](int h) {
+      const double angle = angle_at(h);
+      if (angle >= before) return;
+      before = angle;
+      worst = h;
+    });
     SurfacePlace best;
     double best_angle = before + worthwhile;
     // The edges of v serve as directions; they and their opposites cover the tangent plane.
@@ -133,15 +203,17 @@ class Mender {
         if (!(length > 0)) continue;
         --budget_.places;
         const SurfacePlace place = patch_.fit(v, here + sign * std::min(step / length, 0.5) * along);
-        double smallest = 4 * crown_weight_;
-        mesh().around(
-            v, [&](int k) { smallest = std::min(smallest, angle_of(v, place.point, mesh().to(k), mesh().apex(k))); });
+        const auto angle_after = [&](int k) { return angle_of(v, place.point, mesh().to(k), mesh().apex(k)); };
+        double smallest = angle_after(worst);
+        mesh().around(v, [&](int k) {
+          if (smallest > best_angle && k != worst) smallest = std::min(smallest, angle_after(k));
+        });
         if (smallest <= best_angle || !patch_.can_move(v, place)) continue;
         best_angle = smallest;
         best = place;
       }
     if (best.triangle < 0) return false;
-    patch_.move(v, best);
+    move(v, best);
     return true;
   }
 
@@ -170,7 +242,7 @@ class Mender {
         }
       if (after < std::min(angle_at(longest), angle_at(g)) + worthwhile) return false;
     }
-    patch_.split(longest);
+    split(longest);
     --budget_.splits;
     return true;
   }
@@ -178,6 +250,9 @@ class Mender {
   FittedPatch& patch_;
   double crown_weight_;
   MendingBudget& budget_;
+  int changes_ = 0;                // flips, collapses, moves and splits so far
+  std::vector<int> changed_;       // per vertex the last of them that concerned a triangle around it
+  std::vector<GivenUp> given_up_;  // per triangle
 };
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "base/option_range.hpp"
 #include "fusion/fill_holes.hpp"
 #include "mesh/adjacency.hpp"
+#include "mesh/at.hpp"
 #include "mesh/border_pieces.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/self_intersection.hpp"
@@ -18,7 +19,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <map>
+#include <numeric>
 #include <set>
 
 namespace rhizodont {
@@ -30,15 +31,49 @@ std::array<HalfEdge, 3> half_edges(const Triangle& t) {
   return {HalfEdge{t[0], t[1]}, HalfEdge{t[1], t[2]}, HalfEdge{t[2], t[0]}};
 }
 
+/// Half-edges in ascending order, and where those of a vertex begin: counted, since a vertex has but a few.
+class SortedHalfEdges {
+ public:
+  SortedHalfEdges() = default;
+  SortedHalfEdges(std::size_t vertices, const std::vector<Triangle>& triangles)
+      : all_(3 * triangles.size()), end_(vertices + 1, 0) {
+    for (const Triangle& t : triangles)
+      for (const HalfEdge& h : half_edges(t)) ++end_[at(h.first) + 1];
+    std::partial_sum(end_.begin(), end_.end(), end_.begin());
+    for (const Triangle& t : triangles)
+      for (const HalfEdge& h : half_edges(t)) all_[end_[at(h.first)]++] = h;
+    for (std::size_t v = 0; v < vertices; ++v) std::sort(begin_of(v), end_of(v));
+  }
+
+  const std::vector<HalfEdge>& all() const { return all_; }
+
+  bool contains(const HalfEdge& h) const {
+    return std::find(begin_of(at(h.first)), end_of(at(h.first)), h) != end_of(at(h.first));
+  }
+
+ private:
+  std::size_t first_of(std::size_t vertex) const { return vertex == 0 ? 0 : end_[vertex - 1]; }
+  std::vector<HalfEdge>::iterator begin_of(std::size_t v) {
+    return all_.begin() + static_cast<std::ptrdiff_t>(first_of(v));
+  }
+  std::vector<HalfEdge>::iterator end_of(std::size_t v) { return all_.begin() + static_cast<std::ptrdiff_t>(end_[v]); }
+  std::vector<HalfEdge>::const_iterator begin_of(std::size_t v) const {
+    return all_.begin() + static_cast<std::ptrdiff_t>(first_of(v));
+  }
+  std::vector<HalfEdge>::const_iterator end_of(std::size_t v) const {
+    return all_.begin() + static_cast<std::ptrdiff_t>(end_[v]);
+  }
+
+  std::vector<HalfEdge> all_;
+  std::vector<std::size_t> end_;  // of the half-edges that leave each vertex
+};
+
 /// The root's triangles beside the crown, and how they are taken back until the two fit.
 class RootPatch {
  public:
-  RootPatch(const TriangleMesh& crown, const Joining& joining) : crown_(crown), sites_(joining.sites) {
-    crown_half_edges_.reserve(3 * crown.triangles.size());
-    for (const Triangle& t : crown.triangles)
-      for (const HalfEdge& h : half_edges(t)) crown_half_edges_.push_back(h);
-    std::sort(crown_half_edges_.begin(), crown_half_edges_.end());
-    for (const HalfEdge& h : crown_half_edges_)
+  RootPatch(const TriangleMesh& crown, const Joining& joining)
+      : crown_(crown), sites_(joining.sites), crown_half_edges_(crown.vertices.size(), crown.triangles) {
+    for (const HalfEdge& h : crown_half_edges_.all())
       if (!is_of_crown({h.second, h.first})) border_half_edges_.push_back(h);
     const std::vector<BorderPiece> pieces = border_pieces(crown);
     const BorderPiece& base = pieces[base_piece(pieces)];
@@ -62,17 +97,18 @@ class RootPatch {
   }
 
   void remove_around(const std::set<int>& vertices) {
+    if (vertices.empty()) return;
     std::erase_if(triangles_, [&](const Triangle& t) {
       return std::any_of(t.begin(), t.end(), [&](int v) { return vertices.contains(v); });
     });
   }
 
-  /// Joins a patch that does not touch the crown by two triangles between the nearest border edges of both. Throws
-  /// NoResultError if the patch has no border.
-  void bridge_to_crown() {
+  /// Joins a patch that does not touch the crown by two triangles between the nearest border edges of both, and returns
+  /// how many triangles were added, the last ones of the patch. Throws NoResultError if the patch has no border.
+  std::size_t bridge_to_crown() {
     for (const Triangle& t : triangles_)
       for (const auto& [a, b] : half_edges(t))
-        if (is_of_crown({b, a})) return;
+        if (is_of_crown({b, a})) return 0;
     std::vector<HalfEdge> open;
     for (const HalfEdge& h : open_half_edges()) {
       if (h.first < crown_vertices() && h.second < crown_vertices()) continue;
@@ -92,18 +128,22 @@ class RootPatch {
     }
     triangles_.push_back({crowns.second, crowns.first, ours.second});
     triangles_.push_back({crowns.second, ours.second, ours.first});
+    return 2;
   }
 
   /// Crown and patch in one mesh: crown vertices and triangles first.
   TriangleMesh joined() const {
     TriangleMesh mesh = crown_;
-    std::map<int, int> number;
+    std::vector<int> number(sites_.size(), -1);
     for (Triangle t : triangles_) {
       for (std::int32_t& v : t) {
         if (v < crown_vertices()) continue;
-        const auto [place, is_new] = number.try_emplace(v, static_cast<int>(mesh.vertices.size()));
-        if (is_new) mesh.vertices.push_back(sites_[static_cast<std::size_t>(v)]);
-        v = place->second;
+        int& now = number[at(v)];
+        if (now < 0) {
+          now = static_cast<int>(mesh.vertices.size());
+          mesh.vertices.push_back(sites_[at(v)]);
+        }
+        v = now;
       }
       mesh.triangles.push_back(t);
     }
@@ -115,20 +155,21 @@ class RootPatch {
   /// The site behind each vertex of `joined()`.
   std::vector<int> joined_sites() const {
     std::vector<int> sites(crown_.vertices.size());
-    for (std::size_t v = 0; v < sites.size(); ++v) sites[v] = static_cast<int>(v);
-    std::set<int> seen;
+    std::iota(sites.begin(), sites.end(), 0);
+    std::vector<bool> seen(sites_.size(), false);
     for (const Triangle& t : triangles_)
-      for (const int v : t)
-        if (v >= crown_vertices() && seen.insert(v).second) sites.push_back(v);
+      for (const int v : t) {
+        if (v < crown_vertices() || seen[at(v)]) continue;
+        seen[at(v)] = true;
+        sites.push_back(v);
+      }
     return sites;
   }
 
  private:
   int crown_vertices() const { return static_cast<int>(crown_.vertices.size()); }
 
-  bool is_of_crown(const HalfEdge& h) const {
-    return std::binary_search(crown_half_edges_.begin(), crown_half_edges_.end(), h);
-  }
+  bool is_of_crown(const HalfEdge& h) const { return h.first < crown_vertices() && crown_half_edges_.contains(h); }
 
   double distance(int a, int b) const {
     return (sites_[static_cast<std::size_t>(a)] - sites_[static_cast<std::size_t>(b)]).norm();
@@ -140,18 +181,10 @@ class RootPatch {
     return std::none_of(edges.begin(), edges.end(), [&](const HalfEdge& h) { return is_of_crown(h); });
   }
 
-  std::vector<HalfEdge> sorted_half_edges() const {
-    std::vector<HalfEdge> all;
-    all.reserve(3 * triangles_.size());
-    for (const Triangle& t : triangles_)
-      for (const HalfEdge& h : half_edges(t)) all.push_back(h);
-    std::sort(all.begin(), all.end());
-    return all;
-  }
-
   /// Removes triangles at half-edges that stand twice; true if any was removed.
   bool remove_crowded_edges() {
-    const std::vector<HalfEdge> all = sorted_half_edges();
+    const SortedHalfEdges sorted(sites_.size(), triangles_);
+    const std::vector<HalfEdge>& all = sorted.all();
     std::vector<HalfEdge> twice;
     for (std::size_t i = 1; i < all.size(); ++i)
       if (all[i] == all[i - 1]) twice.push_back(all[i]);
@@ -181,25 +214,24 @@ class RootPatch {
 
   /// Half-edges of crown and patch without a triangle on their other side.
   std::vector<HalfEdge> open_half_edges() const {
-    const std::vector<HalfEdge> patch = sorted_half_edges();
+    const SortedHalfEdges patch(sites_.size(), triangles_);
     const auto is_open = [&](const HalfEdge& h) {
       const HalfEdge other{h.second, h.first};
-      return !std::binary_search(patch.begin(), patch.end(), other) && !is_of_crown(other);
+      return !patch.contains(other) && !is_of_crown(other);
     };
     std::vector<HalfEdge> open;
-    std::copy_if(border_half_edges_.begin(), border_half_edges_.end(), std::back_inserter(open), is_open);
-    std::copy_if(patch.begin(), patch.end(), std::back_inserter(open), is_open);
+    std::ranges::copy_if(border_half_edges_, std::back_inserter(open), is_open);
+    std::ranges::copy_if(patch.all(), std::back_inserter(open), is_open);
     std::sort(open.begin(), open.end());
     return open;
   }
 
   /// Removes the patch around vertices where two gaps meet, or around which its triangles do not form one fan.
   bool remove_pinched_vertices() {
-    std::map<int, int> leaving;
-    for (const HalfEdge& h : open_half_edges()) ++leaving[h.first];
     std::set<int> pinched;
-    for (const auto& [v, count] : leaving)
-      if (count > 1) pinched.insert(v);
+    const std::vector<HalfEdge> open = open_half_edges();  // in order of their starts
+    for (std::size_t i = 1; i < open.size(); ++i)
+      if (open[i].first == open[i - 1].first) pinched.insert(open[i].first);
     for (const int v : vertices_with_several_fans()) pinched.insert(v);
     const std::size_t before = triangles_.size();
     remove_around(pinched);
@@ -210,19 +242,21 @@ class RootPatch {
   std::vector<int> vertices_with_several_fans() const {
     struct Turn {
       int at, from, to;  // around vertex `at`
-      bool operator<(const Turn& other) const { return at < other.at; }
     };
     std::vector<bool> of_patch(sites_.size(), false);
     for (const Triangle& t : triangles_)
-      for (const int v : t) of_patch[static_cast<std::size_t>(v)] = true;
-    std::vector<Turn> turns;
-    const auto add = [&](const Triangle& t) {
-      for (std::size_t i = 0; i < 3; ++i)
-        if (of_patch[static_cast<std::size_t>(t[i])]) turns.push_back({t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
+      for (const int v : t) of_patch[at(v)] = true;
+    const auto for_each_turn = [&](const auto& visit) {
+      for (const std::vector<Triangle>* triangles : {&triangles_, &crown_.triangles})
+        for (const Triangle& t : *triangles)
+          for (std::size_t i = 0; i < 3; ++i)
+            if (of_patch[at(t[i])]) visit(Turn{t[i], t[(i + 1) % 3], t[(i + 2) % 3]});
     };
-    for (const Triangle& t : triangles_) add(t);
-    for (const Triangle& t : crown_.triangles) add(t);
-    std::stable_sort(turns.begin(), turns.end());
+    std::vector<std::size_t> next(sites_.size() + 1, 0);  // per vertex where its next turn goes
+    for_each_turn([&](const Turn& turn) { ++next[at(turn.at) + 1]; });
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    std::vector<Turn> turns(next.back());
+    for_each_turn([&](const Turn& turn) { turns[next[at(turn.at)]++] = turn; });
     std::vector<int> found;
     for (auto first = turns.begin(); first != turns.end();) {
       const auto last = std::find_if(first, turns.end(), [&](const Turn& t) { return t.at != first->at; });
@@ -247,7 +281,7 @@ class RootPatch {
 
   const TriangleMesh& crown_;
   const std::vector<Point>& sites_;
-  std::vector<HalfEdge> crown_half_edges_;   // sorted
+  SortedHalfEdges crown_half_edges_;
   std::vector<HalfEdge> border_half_edges_;  // those of the crown without a triangle on their other side, sorted
   std::vector<HalfEdge> base_;               // the crown's border that the root continues
   std::vector<Triangle> triangles_;
@@ -276,10 +310,13 @@ JoinedTooth restore_crown(const TriangleMesh& crown, const Joining& joining, con
   RootPatch patch(crown, joining);
   for (int round = 0;; ++round) {
     patch.make_manifold();
-    patch.bridge_to_crown();
+    const std::size_t bridging = patch.bridge_to_crown();
     const TriangleMesh open = patch.joined();
     const FilledMesh filled = fill_holes(open);
-    const auto cuts = options.test_cuts ? self_intersecting_triangles(filled.mesh) : std::vector<std::pair<int, int>>{};
+    // After the first round what is left of the patch has been tested, and all that cut anything was taken away.
+    const std::size_t clear = round == 0 ? crown.triangles.size() : open.triangles.size() - bridging;
+    std::vector<std::pair<int, int>> cuts;
+    if (options.test_cuts) cuts = self_intersecting_triangles(filled.mesh, clear);
     if (cuts.empty()) {
       JoinedTooth tooth;
       tooth.mesh = filled.mesh;

@@ -30,7 +30,8 @@ struct JoinedTooth {
 /// vertex are kept as far as they fit the crown's border; gaps that remain are filled over their border vertices.
 /// Where the result cuts itself, root triangles are taken back around the place and the gap is filled again.
 ///
-/// `crown`: the one given to `join_crown_and_root`, manifold, its border loops not touching, one component.
+/// `crown`: the one given to `join_crown_and_root`, manifold, its border loops not touching, one component, its
+/// triangles not cutting each other, which is not tested again.
 /// Throws NoResultError if the dual has no root or one that is closed by itself; with ids of the triangles, if no
 /// closed manifold without self-intersection is found.
 JoinedTooth restore_crown(const TriangleMesh& crown, const Joining& joining, const RestoreOptions& options = {});

@@ -10,7 +10,6 @@
 #include "fusion/point_grid.hpp"
 #include "mesh/at.hpp"
 #include "mesh/geometry.hpp"
-#include "mesh/nearest_vertex.hpp"
 
 #include <Eigen/Geometry>
 
@@ -48,10 +47,9 @@ class Front {
   }
 
   void start_at_border(const TriangleMesh& crown, const CrownBorder& border) {
-    const NearestVertexIndex index(walk_.surface().vertices);
     for (const auto& [from, to] : border.half_edges) {
       const Point &a = crown.vertices[at(from)], &b = crown.vertices[at(to)];
-      const int near = walk_.triangle_at(index.nearest(0.5 * (a + b)).index);
+      const int near = walk_.triangle_near(0.5 * (a + b));
       propose(b, a, near, 0, +1);
     }
     advance();

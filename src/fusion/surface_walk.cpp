@@ -10,7 +10,10 @@
 
 namespace rhizodont {
 SurfaceWalk::SurfaceWalk(const TriangleMesh& surface)
-    : surface_(surface), adjacency_(triangle_adjacency(surface)), around_(vertex_triangles(surface)) {
+    : surface_(surface),
+      adjacency_(triangle_adjacency(surface)),
+      around_(vertex_triangles(surface)),
+      vertices_(surface.vertices) {
   normals_.reserve(surface.triangles.size());
   for (std::size_t t = 0; t < surface.triangles.size(); ++t) normals_.push_back(triangle_normal(surface, t));
 }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include "mesh/adjacency.hpp"
+#include "mesh/at.hpp"
+#include "mesh/nearest_vertex.hpp"
 #include "rhizodont/mesh.hpp"
 
 #include <vector>
@@ -31,14 +33,16 @@ class SurfaceWalk {
   const TriangleMesh& surface() const { return surface_; }
 
   /// A triangle at each vertex.
-  int triangle_at(int vertex) const {
-    return around_.triangles[static_cast<std::size_t>(around_.first[static_cast<std::size_t>(vertex)])];
-  }
+  int triangle_at(int vertex) const { return around_.triangles[at(around_.first[at(vertex)])]; }
+
+  /// A triangle at the surface's vertex nearest to the point.
+  int triangle_near(const Point& p) const { return triangle_at(vertices_.nearest(p).index); }
 
  private:
   const TriangleMesh& surface_;
   TriangleAdjacency adjacency_;
   VertexTriangles around_;
+  NearestVertexIndex vertices_;
   std::vector<Eigen::Vector3d> normals_;
 };
 

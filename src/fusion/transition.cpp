@@ -265,6 +265,7 @@ Transition smooth_transition(JoinedTooth& tooth, const TransitionOptions& option
   require_in_range(options);
   Transition result;
   result.width = chosen_width(tooth, options);
+  const auto crown_triangles = static_cast<std::size_t>(tooth.crown_triangles);
   std::vector<int> crown(static_cast<std::size_t>(tooth.crown_vertices));
   std::iota(crown.begin(), crown.end(), 0);
   const auto distance = distances_along_edges(tooth.mesh, crown, result.width);
@@ -274,7 +275,7 @@ Transition smooth_transition(JoinedTooth& tooth, const TransitionOptions& option
       result.vertices.empty() ? Eigen::MatrixXd{} : solve_biharmonic(tooth.mesh, result.vertices);
   if (target.rows() == 0) {
     result.applied = result.vertices.empty() ? 1 : 0;
-    result.cuts_itself = !self_intersecting_triangles(tooth.mesh).empty();
+    result.cuts_itself = !self_intersecting_triangles(tooth.mesh, crown_triangles).empty();
     return result;
   }
   SafeMoves moves(tooth, result.vertices, target, options);
@@ -282,7 +283,7 @@ Transition smooth_transition(JoinedTooth& tooth, const TransitionOptions& option
   // Each pass takes some moves back, so this ends; where nothing can be lessened the cut was there before.
   for (int round = 1;; ++round) {
     while (moves.restrain_bad_triangles(smoothed)) smoothed = moves.moved();
-    const auto cuts = self_intersecting_triangles(smoothed);
+    const auto cuts = self_intersecting_triangles(smoothed, crown_triangles);
     result.cuts_itself = !cuts.empty();
     if (cuts.empty() || round >= options.cut_rounds || !moves.restrain_cuts(smoothed, cuts)) break;
     smoothed = moves.moved();

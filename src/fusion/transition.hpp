@@ -37,7 +37,7 @@ struct Transition {
 /// Heals the seam between crown and root: the vertices of the band are moved to the solution of the biharmonic equation
 /// L M^-1 L x = 0 with all other vertices fixed, so that the surface continues the crown's slope (paper, 3.6). Crown
 /// vertices never move. Where a triangle would turn over, lose a good angle or cut another, the vertices about it move
-/// less or not at all.
+/// less or not at all. Precondition: the crown's own triangles do not cut each other.
 Transition smooth_transition(JoinedTooth& tooth, const TransitionOptions& options = {});
 
 }  // namespace rhizodont

@@ -194,9 +194,22 @@ ClosedBox box_of_directions(const Soup& soup, int triangle, int corner) {
   return {{low.x(), low.y(), low.z()}, {high.x(), high.y(), high.z()}};
 }
 
+/// Those of the triangles whose boxes meet the box around all others.
+std::vector<int> near_the_others(const Soup& soup, const std::vector<int>& triangles, const std::vector<int>& others) {
+  std::vector<int> near;
+  const std::vector<ClosedBox> boxes = boxes_of(soup, others);
+  if (boxes.empty()) return near;
+  ClosedBox around = boxes.front();
+  for (const ClosedBox& box : boxes) around.extend(box);
+  const std::vector<ClosedBox> own = boxes_of(soup, triangles);
+  for (std::size_t k = 0; k < triangles.size(); ++k)
+    if (own[k].meets(around)) near.push_back(triangles[k]);
+  return near;
+}
+
 /// Pairs that may meet: their boxes do, and where they have a hub in common, the directions in which they lie from it;
-/// and no side of one keeps them apart.
-std::vector<Pair> candidate_pairs(const Soup& soup) {
+/// and no side of one keeps them apart. None of two among the first `clear` triangles.
+std::vector<Pair> candidate_pairs(const Soup& soup, std::size_t clear) {
   std::vector<Pair> pairs;
   // `found`: pairs by their places in lists of triangles.
   const auto note = [&](const std::vector<Pair>& found, const std::vector<int>& first, const std::vector<int>& second) {
@@ -205,14 +218,21 @@ std::vector<Pair> candidate_pairs(const Soup& soup) {
   };
   const auto may_meet = [&](const std::vector<int>& first, const std::vector<int>& second) {
     return [&](int i, int j) {
-      const Triangle& s = soup.triangles[static_cast<std::size_t>(first[static_cast<std::size_t>(i)])];
-      const Triangle& t = soup.triangles[static_cast<std::size_t>(second[static_cast<std::size_t>(j)])];
+      const auto a = static_cast<std::size_t>(first[static_cast<std::size_t>(i)]),
+                 b = static_cast<std::size_t>(second[static_cast<std::size_t>(j)]);
+      if (a < clear && b < clear) return false;
+      const Triangle &s = soup.triangles[a], &t = soup.triangles[b];
       return !is_apart_along_a_side(soup, s, t) && !is_apart_along_a_side(soup, t, s);
     };
   };
   const Crowds crowds = find_crowds(soup);
-  std::vector<int> done = crowds.others;
-  note(BoxTree(boxes_of(soup, done)).meeting_pairs(may_meet(done, done)), done, done);
+  std::vector<int> done = crowds.others;  // ascending
+  const auto first_new = std::ranges::partition_point(done, [&](int t) { return static_cast<std::size_t>(t) < clear; });
+  const std::vector<int> fresh(first_new, done.end());
+  const BoxTree tree(boxes_of(soup, fresh));
+  note(tree.meeting_pairs(may_meet(fresh, fresh)), fresh, fresh);
+  const std::vector<int> near = near_the_others(soup, {done.begin(), first_new}, fresh);
+  note(tree.meeting_pairs(BoxTree(boxes_of(soup, near)), may_meet(fresh, near)), fresh, near);
   for (std::size_t k = 0; k < crowds.hubs.size(); ++k) {
     const std::vector<int>& crowd = crowds.at_hub[k];
     note(BoxTree(boxes_of(soup, crowd)).meeting_pairs(BoxTree(boxes_of(soup, done)), may_meet(crowd, done)), crowd,
@@ -228,12 +248,12 @@ std::vector<Pair> candidate_pairs(const Soup& soup) {
 
 }  // namespace
 
-std::vector<Pair> self_intersecting_triangles(const TriangleMesh& mesh) {
+std::vector<Pair> self_intersecting_triangles(const TriangleMesh& mesh, std::size_t first_clear) {
   require_valid_indices(mesh);
   require_finite(mesh.vertices);
   Soup soup{{}, mesh.triangles, mesh.vertices};
   for (const Point& p : mesh.vertices) soup.points.emplace_back(p.x(), p.y(), p.z());
-  std::vector<Pair> pairs = candidate_pairs(soup);
+  std::vector<Pair> pairs = candidate_pairs(soup, first_clear);
   std::vector<char> meet(pairs.size(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pairs.size(), 1024), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k)
