@@ -222,8 +222,11 @@ FusedTooth fuse_crown_and_root(const PreparedCrown& crown, const TriangleMesh& g
   spent.separation += watch.restart();
   FusedTooth best = fuse_on(ground, options, spent);
   double share = least_angle_share(best.tooth, options.transition), last_share = share;
+  constexpr int most_in_vain = 2;
+  int in_vain = 0;
   for (const double growth : options.other_growths) {
-    if (share >= 1) break;
+    if (share >= 1 || in_vain == most_in_vain) break;
+    ++in_vain;
     ground.lengths = ground.edge_lengths(growth, options);
     try {
       FusedTooth other = fuse_on(ground, options, spent);
@@ -234,6 +237,7 @@ FusedTooth fuse_crown_and_root(const PreparedCrown& crown, const TriangleMesh& g
       if (others <= share) continue;
       share = others;
       best = std::move(other);
+      in_vain = 0;
     } catch (const NoResultError&) {
       // There is a tooth already; this was to make it better.
     }

@@ -17,8 +17,8 @@ namespace rhizodont {
 
 struct FuseOptions {
   double edge_growth = 0.9;  ///< > 0: how fast edges grow with the distance from a short border edge
-  /// Tried in turn where new triangles have angles below the transition's bounds, until two give the same worst angle;
-  /// the best tooth is taken.
+  /// Tried in turn where new triangles have angles below the transition's bounds, until two give the same worst angle
+  /// or two in turn make it no better; the best tooth is taken.
   std::vector<double> other_growths{0.75, 0.6, 1.2, 0.5};
   double edge_shrinkage = 0.15;  ///< > 0: how fast they shrink from a long one
   SeparationOptions separation;
@@ -62,7 +62,8 @@ struct FusedTooth {
 /// crown, improve the root's triangles and smooth the transition. Every result is tested for self-intersection; a step
 /// that would break the tooth is left out and said in the warnings. If no closed tooth comes out, the root is started
 /// farther from the crown. `crown` is manifold, one component, its border loops not touching, its triangles not cutting
-/// each other; `growth_axis` a unit vector to the crown, the root's own if it leans. Throws NoResultError where no attempt gives a closed tooth.
+/// each other; `growth_axis` a unit vector to the crown, the root's own if it leans. Throws NoResultError where no
+/// attempt gives a closed tooth.
 FusedTooth fuse_crown_and_root(const PreparedCrown& crown, const TriangleMesh& guiding_surface,
                                const Eigen::Vector3d& growth_axis, const FuseOptions& options = {});
 
