@@ -10,7 +10,7 @@ git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
 /usr/bin/python3 scripts/check_lengths.py
 /usr/bin/python3 scripts/check_rooms.py --self-test
 /usr/bin/python3 scripts/check_rooms.py
-cmake -S . -B build -G Ninja -DRHIZODONT_WERROR=ON -DRHIZODONT_TESTS=ON -DRHIZODONT_BENCH=ON -DRHIZODONT_TRAINING=ON
+cmake -S . -B build -G Ninja -DRHIZODONT_WERROR=ON -DRHIZODONT_TESTS=ON -DRHIZODONT_BENCH=ON -DRHIZODONT_TRAINING=ON -DRHIZODONT_PYTHON=ON
 cmake --build build
 scripts/tidy_changed.sh --at-most 12
 rm -rf build/test_results
