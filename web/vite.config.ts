@@ -1,6 +1,18 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { readFileSync } from 'node:fs';
+
 import { defineConfig, type Plugin } from 'vite';
+
+/** Puts what the page and the reports have in common (parts/) into either. */
+const parts: Plugin = {
+  name: 'parts',
+  transformIndexHtml: {
+    order: 'pre',
+    handler: (html) => html.replace(/ *<!--part (\w+)-->\n/g, (_, name: string) =>
+      readFileSync(new URL(`parts/${name}.html`, import.meta.url), 'utf8').replace(/^<!--.*?-->\n/s, '')),
+  },
+};
 
 /** Puts script and styles into the page, which then opens from a disk without anything beside it. */
 const inOneFile: Plugin = {
@@ -27,7 +39,7 @@ const inOneFile: Plugin = {
 // One script and one style sheet with fixed names, which the build takes into the program; with --mode report the page of
 // a report, in one file. `npm run dev` serves the page with a program that runs beside it.
 export default defineConfig(({ mode }) => ({
-  plugins: mode === 'report' ? [inOneFile] : [],
+  plugins: mode === 'report' ? [parts, inOneFile] : [parts],
   build: {
     target: 'es2022',
     modulePreload: false,

@@ -90,8 +90,8 @@ class Completion {
     if (!command.files.confidence.empty() && !skirt_threshold(command.skirt))
       throw UsageError("A confidence is there only where a skirt is looked for (--skirt auto).");
     for (const CrownJob& job : jobs_)
-      for (const auto& report : job.reports)
-        if (is_page_name(report)) require_report_page();
+      for (const auto& report : job.reports) has_pages_ = has_pages_ || is_page_name(report);
+    if (has_pages_) require_report_page();
     for (const CrownJob& job : jobs_)
       for (const auto* names : {&job.teeth, &job.reports})
         for (const auto& name : *names)
@@ -102,6 +102,7 @@ class Completion {
   /// Completes them all; one that fails does not stop the others. The largest of their exit codes.
   int run() {
     models_ = CompletionModels::load(models_folder_);  // not in a crown's name: no report is to say it was refused
+    if (has_pages_) model_hashes_ = hashes_of(model_files(models_folder_));  // once for the pages of all crowns
     int worst = 0;
     std::size_t completed = 0;
     for (std::size_t i = 0; i < jobs_.size(); ++i) {
@@ -214,7 +215,7 @@ class Completion {
   std::string as_named(const std::filesystem::path& name, const std::string& report,
                        std::map<std::string, std::string> views) const {
     if (!is_page_name(name)) return report;
-    return html_report(report, {std::move(views), "", hashes_of(model_files(models_folder_))});
+    return html_report(report, {std::move(views), "", model_hashes_});
   }
 
   /// The crown's name goes to the screen alone: reports are passed on, and names tell of patients.
@@ -241,7 +242,9 @@ class Completion {
   std::filesystem::path models_folder_;
   std::vector<CrownJob> jobs_;
   std::optional<CompletionModels> models_;
-  std::FILE* words_ = stdout;  // what is said to the user, so that it does not get into a mesh
+  bool has_pages_ = false;
+  std::map<std::string, std::string> model_hashes_;  // of the pages
+  std::FILE* words_ = stdout;                        // what is said to the user, so that it does not get into a mesh
 };
 
 void run(const CompleteCommand& command) {

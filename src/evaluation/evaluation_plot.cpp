@@ -44,8 +44,10 @@ Scale find_scale(const Evaluation& evaluation) {
 void draw_axes(const Scale& scale, std::string& svg) {
   const auto out = std::back_inserter(svg);
   const CbctNoise noise;
-  fmt::format_to(out, R"(<polygon points="{},{} {},{} {},{} {},{}" fill="#e8e8e8"/>)", scale.x(scale.low),
-                 scale.y(scale.low + noise.root_length_low_mm), scale.x(scale.high),
+  fmt::format_to(out, R"svg(<clipPath id="frame"><rect x="{0}" y="{0}" width="{1}" height="{1}"/></clipPath>)svg",
+                 margin, size - 2 * margin);
+  fmt::format_to(out, R"svg(<polygon points="{},{} {},{} {},{} {},{}" fill="#e8e8e8" clip-path="url(#frame)"/>)svg",
+                 scale.x(scale.low), scale.y(scale.low + noise.root_length_low_mm), scale.x(scale.high),
                  scale.y(scale.high + noise.root_length_low_mm), scale.x(scale.high),
                  scale.y(scale.high + noise.root_length_high_mm), scale.x(scale.low),
                  scale.y(scale.low + noise.root_length_high_mm));
@@ -73,8 +75,10 @@ void draw_tooth(const Scale& scale, int fdi, const CaseOutcome& outcome, std::st
   const double predicted = truth + outcome.figures->root_length_error_mm;
   if (outcome.uncertainty && outcome.uncertainty->interval) {
     const RootInterval& interval = *outcome.uncertainty->interval;
-    fmt::format_to(out, R"(<line x1="{0:.1f}" x2="{0:.1f}" y1="{1:.1f}" y2="{2:.1f}" stroke="{3}" opacity="0.4"/>)",
-                   scale.x(truth), scale.y(interval.length_low_mm), scale.y(interval.length_high_mm), colour);
+    fmt::format_to(
+        out,
+        R"svg(<line x1="{0:.1f}" x2="{0:.1f}" y1="{1:.1f}" y2="{2:.1f}" stroke="{3}" opacity="0.4" clip-path="url(#frame)"/>)svg",
+        scale.x(truth), scale.y(interval.length_low_mm), scale.y(interval.length_high_mm), colour);
   }
   fmt::format_to(out, R"(<circle cx="{:.1f}" cy="{:.1f}" r="3.5" fill="{}"><title>{}</title></circle>)", scale.x(truth),
                  scale.y(predicted), colour, fdi);

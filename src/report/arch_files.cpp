@@ -198,6 +198,7 @@ Json report_json(const ScanInput& input, const CompletedArch& arch, const ArchOp
             {"root_lengths_mm", lengths},
             {"resolve_collisions", options.resolve_collisions},
             {"clearance_mm", options.clearance_mm}}},
+          {"found", input.found},
           {"rooted", arch.rooted()},
           {"teeth", teeth},
           {"clearances", clearances_json(arch)},
@@ -252,6 +253,13 @@ void refuse_what_no_file_holds(CompletedArch& arch, const ArchFileOptions& how) 
 std::string arch_report(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,
                         const ArchFileOptions& how) {
   return text_of(report_json(input, arch, options, how));
+}
+
+std::string arch_mesh_bytes(const CompletedArch& arch, const std::string& format) {
+  const std::string name = "arch." + format;
+  for (const ToothOfArch& tooth : arch.teeth)
+    if (tooth.tooth) require_format_holds(*tooth.tooth, name);
+  return mesh_file_bytes(name, arch_in_one(arch));
 }
 
 std::vector<OutputFile> arch_files(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,

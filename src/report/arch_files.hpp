@@ -37,6 +37,10 @@ std::vector<OutputFile> arch_files(const ScanInput& input, const CompletedArch& 
 std::string arch_report(const ScanInput& input, const CompletedArch& arch, const ArchOptions& options,
                         const ArchFileOptions& how);
 
+/// All teeth in one mesh, as in arch.ply. Throws as `require_format_holds`.
+/// @param format  "ply", "stl", "obj"
+std::string arch_mesh_bytes(const CompletedArch& arch, const std::string& format);
+
 /// Refuses those teeth that their file's format cannot hold (`require_format_holds`); to be called before `arch_files`.
 void refuse_what_no_file_holds(CompletedArch& arch, const ArchFileOptions& how);
 

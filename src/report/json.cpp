@@ -135,4 +135,11 @@ void to_json(Json& json, const MeshMeasures& m) {
                 {"edge_max_mm", m.edge_max}}}};
 }
 
+void to_json(Json& json, const FoundTooth& tooth) {
+  json = {{"fdi", tooth.fdi},
+          {"confidence", tooth.confidence},
+          {"second", value_or_null(tooth.second)},
+          {"second_confidence", tooth.second_confidence}};
+}
+
 }  // namespace rhizodont

@@ -6,6 +6,7 @@
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/measure.hpp"
+#include "rhizodont/segment.hpp"
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
@@ -36,6 +37,7 @@ void to_json(nlohmann::ordered_json& json, const CompleteOptions& options);
 void to_json(nlohmann::ordered_json& json, const QualityFigures& figures);
 void to_json(nlohmann::ordered_json& json, const CheckReport& report);
 void to_json(nlohmann::ordered_json& json, const MeshMeasures& measures);
+void to_json(nlohmann::ordered_json& json, const FoundTooth& tooth);
 
 // Back again, for `json.get<T>()`. Throw nlohmann::json::exception for what is missing or of another kind.
 void from_json(const nlohmann::ordered_json& json, QualityFigures& figures);

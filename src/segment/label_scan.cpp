@@ -4,6 +4,7 @@
 
 #include "rhizodont/error.hpp"
 #include "segment/numbering.hpp"
+#include "segment/pieces_of_jaws.hpp"
 #include "segment/tooth_borders.hpp"
 #include "segment/tooth_instances.hpp"
 #include "teeth/clean_labels.hpp"
@@ -222,6 +223,8 @@ SegmentedScan label_scan(const TriangleMesh& scan, const TeethReading& reading, 
   describe_teeth(scan, numbers, options.millimetres_per_unit, result);
   constexpr double sure_jaw = 0.9;
   if (decision.confidence < sure_jaw) result.notes.push_back("Which jaw this is, is doubtful: --jaw settles it.");
+  if (auto sentence = which_jaw_was_read(scan, result.fdi, options.millimetres_per_unit))
+    result.notes.push_back(std::move(*sentence));
   return result;
 }
 

@@ -24,6 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array<const char*, 4> formats{"ply", "stl", "obj", "glb"};
+constexpr std::array<const char*, 3> arch_formats{"ply", "stl", "obj"};  // a GLB holds floats by its nature: arch.glb
 
 MeshFile crown_with_notes(const Job& job) {
   MeshFile crown = job.scan().file;
@@ -52,15 +53,12 @@ Json arch_json(const ArchResult& result) {
   Json upright = nullptr;
   if (const auto& rows = result.arch.upright)
     upright = {numbers(rows->row(0)), numbers(rows->row(1)), numbers(rows->row(2))};
-  Json found = Json::array();
-  for (const FoundTooth& tooth : result.input.found)
-    found.push_back({{"fdi", tooth.fdi},
-                     {"confidence", tooth.confidence},
-                     {"second", tooth.second ? Json(*tooth.second) : Json(nullptr)},
-                     {"second_confidence", tooth.second_confidence}});
-  return {{"teeth", teeth},     {"searched", result.searched},
-          {"found", found},     {"clearances", clearances},
-          {"upright", upright}, {"has_gum", !result.arch.gum.triangles.empty()},
+  return {{"teeth", teeth},
+          {"searched", result.searched},
+          {"found", result.input.found},
+          {"clearances", clearances},
+          {"upright", upright},
+          {"has_gum", !result.arch.gum.triangles.empty()},
           {"notes", notes}};
 }
 
@@ -97,6 +95,20 @@ std::string view_of_arch(const ArchResult& result, const Scan& scan, double mill
                        : plain_view(tooth.crown, middle, millimetres_per_unit);
   }
   refuse_name();
+}
+
+/// The formats that hold these teeth: some are of single precision alone.
+template <std::size_t count>
+Json formats_that_hold(const std::array<const char*, count>& names, const std::vector<const CompletedTooth*>& teeth) {
+  Json held = Json::array();
+  for (const char* format : names) {
+    try {
+      for (const CompletedTooth* tooth : teeth) require_format_holds(*tooth, std::string("tooth.") + format);
+      held.push_back(format);
+    } catch (const Error&) {  // then it is not among them
+    }
+  }
+  return held;
 }
 
 }  // namespace
@@ -140,8 +152,15 @@ Json job_json(const std::string& id, const Job& job) {
     json["revision"] = result->revision;
     json["tooth"] = tooth_summary(result->tooth);
     for (const std::string& note : job.scan().file.notes) json["tooth"]["warnings"].push_back(note);
+    json["formats"] = formats_that_hold(formats, {&result->tooth});
   }
-  if (const auto result = job.arch()) json["arch"] = arch_json(*result);
+  if (const auto result = job.arch()) {
+    json["arch"] = arch_json(*result);
+    std::vector<const CompletedTooth*> teeth;
+    for (const ToothOfArch& tooth : result->arch.teeth)
+      if (tooth.tooth) teeth.push_back(&*tooth.tooth);
+    json["formats"] = teeth.empty() ? Json::array() : formats_that_hold(arch_formats, teeth);
+  }
   if (const auto failure = job.failure()) json.update(failure->body);
   return json;
 }
@@ -188,6 +207,9 @@ std::string file_of(const Job& job, const std::string& name, const std::map<std:
   if (const auto result = job.arch(); result && name == "report.html")
     return html_report(arch_report(result->input, result->arch, job.request().arch, {}),
                        {report_views(result->input, result->arch), "", model_hashes});
+  if (const auto result = job.arch(); result && result->arch.rooted() > 0)
+    for (const char* format : arch_formats)
+      if (name == std::string("arch.") + format) return arch_mesh_bytes(result->arch, format);
   for (OutputFile& file : all_files(job))
     if (file.path.filename() == name) return std::move(file.bytes);
   refuse_name();

@@ -141,7 +141,10 @@ void list_samples(ServiceState&, const Call& call) {
     if (asset.name.starts_with(samples_folder)) {
       const std::string name(asset.name.substr(samples_folder.size()));
       const auto fdi = fdi_in_name(name);
-      list.push_back({{"name", name}, {"fdi", fdi ? Json(*fdi) : Json(nullptr)}, {"skirt", name.starts_with("skirt")}});
+      list.push_back({{"name", name},
+                      {"kind", kind_name(name.starts_with("scan") ? JobKind::arch : JobKind::tooth)},
+                      {"fdi", fdi ? Json(*fdi) : Json(nullptr)},
+                      {"skirt", name.starts_with("skirt")}});
     }
   send(call.response, {{"samples", list}});
 }

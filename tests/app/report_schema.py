@@ -86,5 +86,18 @@ else:
         if arch_validator.is_valid(spoiled):
             failures.append(f"the schema lets pass an arch without {key}")
 
+# An arch whose teeth were searched for says how sure their numbers are.
+run = subprocess.run([program, "arch", str(samples / "scan_lower.ply"), "--e", "2", "--quiet", "-o", str(work / "found")],
+                     capture_output=True, text=True)
+if run.returncode != 0:
+    failures.append(f"arch without labels: exit code {run.returncode}: {run.stderr}")
+else:
+    found = json.loads((work / "found/arch.json").read_text())
+    failures.extend(f"arch without labels: {e.message}" for e in arch_validator.iter_errors(found))
+    if [tooth["fdi"] for tooth in found["found"]] != [tooth["fdi"] for tooth in found["teeth"]]:
+        failures.append("arch without labels: not every tooth has its confidence")
+    if arch["found"]:
+        failures.append("an arch with labels has confidences of a search")
+
 print("\n".join(failures) if failures else "all reports fit the schema")
 sys.exit(1 if failures else 0)

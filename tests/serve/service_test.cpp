@@ -49,12 +49,13 @@ TEST_F(ServiceTest, SaysWhatItIsAndEveryRouteIsDescribed) {
 
 TEST_F(ServiceTest, SamplesAreThoseOfTheProject) {
   const Json list = json_of(get("/api/v1/samples"), 200)["samples"];
-  EXPECT_EQ(list.size(), 6U);
+  EXPECT_EQ(list.size(), 7U);
   for (const Json& sample : list) {
     const std::string name = sample["name"];
     const auto file = get("/api/v1/samples/" + name);
     ASSERT_TRUE(file);
     EXPECT_EQ(file->body, sample_bytes(name)) << name;
+    EXPECT_EQ(sample["kind"], name == "scan_lower.ply" ? "arch" : "tooth") << name;
   }
   expect_refusal(get("/api/v1/samples/none.ply"), 404, "nothing at this address");
 }
@@ -332,6 +333,12 @@ TEST_F(ServiceTest, LabelledScanBecomesAnArch) {
   EXPECT_NEAR(done["arch"]["teeth"][1]["tooth"]["root_length_mm"].get<double>(), 12.5, 0.35);
   for (const char* name : {"all.zip", "arch.glb", "arch.json", "tooth_36.ply", "axes.json"})
     EXPECT_EQ(get("/api/v1/jobs/" + job + "/files/" + name)->status, 200) << name;
+  const TriangleMesh all = read_mesh(get("/api/v1/jobs/" + job + "/files/arch.ply")->body, "arch.ply").mesh;
+  for (const char* name : {"arch.stl", "arch.obj"}) {
+    const auto file = get("/api/v1/jobs/" + job + "/files/" + name);
+    ASSERT_EQ(file->status, 200) << name;
+    EXPECT_EQ(read_mesh(file->body, name).mesh.triangles.size(), all.triangles.size()) << name;
+  }
   const auto view = get("/api/v1/jobs/" + job + "/views/tooth-36");
   ASSERT_EQ(view->status, 200);
   EXPECT_NE(header_of(view->body).dump().find("clearance"), std::string::npos);

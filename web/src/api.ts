@@ -4,7 +4,7 @@
 /** The API of the program, /api/v1: docs/openapi.json. */
 const root = '/api/v1';
 
-export interface Sample { name: string; fdi: number | null; skirt: boolean }
+export interface Sample { name: string; kind: 'tooth' | 'arch'; fdi: number | null; skirt: boolean }
 export interface SentScan {
   scan: string; sha256: string; vertices: number; triangles: number; fdi_in_name: number | null; has_labels: boolean; kind: 'tooth' | 'arch'; notes: string[];
 }
@@ -37,7 +37,7 @@ export interface Arch {
 export interface Refusal { kind: string; sentence: string; exit_code?: number; ids?: unknown[]; ids_in_all?: number }
 export type State = 'waiting' | 'running' | 'done' | 'refused' | 'cancelled';
 export interface Job {
-  job: string; kind: 'tooth' | 'arch'; state: State; seconds: number; revision?: number; tooth?: Tooth; arch?: Arch; error?: Refusal;
+  job: string; kind: 'tooth' | 'arch'; state: State; seconds: number; revision?: number; formats?: string[]; tooth?: Tooth; arch?: Arch; error?: Refusal;
 }
 
 /** What the program says of a request that it does not carry out. */

@@ -39,6 +39,7 @@ class Page implements PanelActions {
   private sending: AbortController | null = null;
   private wanted: Steering | null = null;
   private isSteering = false;
+  private steeringNow = '';  // what is at work, as JSON
   private isMoving = false;  // a slider
   private asked = 0;         // counts what was opened or started: answers to older questions are passed over
   private samples: Sample[] = [];
@@ -246,7 +247,8 @@ class Page implements PanelActions {
 
   /** One request at a time; of what is asked for meanwhile only the latest. */
   private steer(steering: Steering): void {
-    this.wanted = steering;
+    const isAtWork = this.isSteering && JSON.stringify(steering) === this.steeringNow;
+    this.wanted = isAtWork ? null : steering;  // a slider that is let go asks for what its last move asked for
     if (!this.isSteering) void this.steerOn();
   }
 
@@ -256,6 +258,7 @@ class Page implements PanelActions {
     while (this.wanted && this.job && asked === this.asked) {
       const steering = this.wanted;
       this.wanted = null;
+      this.steeringNow = JSON.stringify(steering);
       this.working(true);
       try {
         const { tooth } = await api.steer(this.job.job, steering, new AbortController().signal);
@@ -381,7 +384,7 @@ class Page implements PanelActions {
 
   private writeSamples(): void {
     byId('samples').replaceChildren(...this.samples.map((sample) => {
-      const name = (sample.fdi ? text('tooth', { fdi: sample.fdi }) : sample.name) + (sample.skirt ? ` ${text('drop.skirt')}` : '');
+      const name = sample.kind === 'arch' ? text('drop.scan') : (sample.fdi ? text('tooth', { fdi: sample.fdi }) : sample.name) + (sample.skirt ? ` ${text('drop.skirt')}` : '');
       const open = async (): Promise<void> => {
         try {
           await this.open([new File([await api.sample(sample.name)], sample.name)]);

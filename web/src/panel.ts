@@ -173,7 +173,9 @@ function archTable(arch: Arch, state: PanelState, actions: PanelActions): Node[]
   head.push(element('th', { scope: 'col' }, element('span', { class: 'hidden' }, text('correct.missing'))));
   const rows = arch.teeth.map(({ fdi, tooth, refusal }) => {
     const found = arch.found.find((each) => each.fdi === fdi);
-    const row = element('tr', {}, element('th', { scope: 'row', title: found ? text('table.found', { percent: number(100 * found.confidence, 0) }) : '' }, String(fdi)));
+    const percent = found ? number(100 * found.confidence, 0) : '';
+    const row = element('tr', {}, element('th', { scope: 'row', title: found ? text('table.found', { percent }) : '' }, String(fdi),
+                                          ...(found ? [element('small', {}, ` ${percent} %`)] : [])));
     if (!tooth) {
       row.append(element('td', { class: 'why', colspan: 5 }, text('table.none') + ': ', element('span', { lang: 'en' }, refusal ?? '')),
                  element('td', {}, missingButton(fdi, arch, state.settings, actions)));
@@ -205,10 +207,13 @@ function archTable(arch: Arch, state: PanelState, actions: PanelActions): Node[]
 function fileLinks(job: Job): HTMLElement {
   const stem = job.tooth ? `tooth_${job.tooth.fdi}` : 'arch';
   const link = (name: string, label: string, saved: string): HTMLElement => element('a', { href: api.fileUrl(job.job, name), download: saved }, label);
+  const mesh = (name: string, ending: string): HTMLElement => job.formats?.includes(ending) ?? true
+    ? link(`${name}.${ending}`, ending.toUpperCase(), `${stem}.${ending}`)
+    : element('button', { type: 'button', disabled: true, title: text('files.single') }, ending.toUpperCase());
   const links = job.tooth
-    ? ['ply', 'stl', 'obj', 'glb'].map((ending) => link(`tooth.${ending}`, ending.toUpperCase(), `${stem}.${ending}`)).concat(
+    ? ['ply', 'stl', 'obj', 'glb'].map((ending) => mesh('tooth', ending)).concat(
         link('report.html', text('files.report'), stem + '.html'), link('report.json', text('files.json'), stem + '.json'))
-    : [link('report.html', text('files.report'), 'arch.html'), link('arch.glb', 'GLB', 'arch.glb'), link('arch.ply', 'PLY', 'arch.ply'), link('arch.json', text('files.json'), 'arch.json')];
+    : [link('report.html', text('files.report'), 'arch.html'), ...['ply', 'stl', 'obj'].map((ending) => mesh('arch', ending)), link('arch.glb', 'GLB', 'arch.glb'), link('arch.json', text('files.json'), 'arch.json')];
   return section('section.files', element('div', { class: 'buttons' }, ...links, link('all.zip', text('files.all'), stem + '.zip')));
 }
 

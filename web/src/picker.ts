@@ -7,7 +7,7 @@ import type { Viewer } from './viewer';
 /** Points of what is shown that a user chooses: by clicks, or by Enter at the middle of the view. */
 export class Picker {
   private wanted: ((point: Vector3) => void) | null = null;
-  private withGum = false;
+  private ofScan = false;
   private pressed: { x: number; y: number } | null = null;
 
   constructor(private readonly viewer: Viewer, canvas: HTMLCanvasElement, private readonly cross: HTMLElement) {
@@ -24,14 +24,14 @@ export class Picker {
   }
 
   /** Whoever asked before gets no more points. null: nobody is to get any. */
-  ask(wanted: ((point: Vector3) => void) | null, withGum = false): void {
+  ask(wanted: ((point: Vector3) => void) | null, ofScan = false): void {
     this.wanted = wanted;
-    this.withGum = withGum;
+    this.ofScan = ofScan;
     this.cross.hidden = wanted === null;
   }
 
   private pick(x: number, y: number): void {
-    const point = this.wanted && this.viewer.pick(x, y, this.withGum);
+    const point = this.wanted && this.viewer.pick(x, y, this.ofScan);
     if (point) this.wanted?.(point);
   }
 }

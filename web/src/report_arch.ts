@@ -9,6 +9,7 @@ import type { Viewer } from './viewer';
 /** The parts of docs/arch_report.schema.json that are shown. */
 export interface ArchReport extends AnyReport {
   arch_report_version: number;
+  found: { fdi: number; confidence: number }[];
   rooted: number;
   teeth: {
     fdi: number; rooted: boolean; refusal: string | null; crown_triangles?: number; kept_crown_triangles?: number; root_length_mm?: number;
@@ -26,10 +27,17 @@ function ofRoots(report: ArchReport, fdi: number | null): { teeth: [number, numb
   });
 }
 
+function measuredIn(report: ArchReport): Record<string, number> {
+  return (report.options as { root_lengths_mm?: Record<string, number> }).root_lengths_mm ?? {};
+}
+
 function rows(report: ArchReport): HTMLElement[] {
-  const measured = (report.options as { root_lengths_mm?: Record<string, number> }).root_lengths_mm ?? {};
+  const measured = measuredIn(report);
   return report.teeth.map((tooth) => {
-    const row = element('tr', {}, element('th', { scope: 'row' }, String(tooth.fdi)));
+    const found = report.found.find((each) => each.fdi === tooth.fdi);
+    const percent = found ? number(100 * found.confidence, 0) : '';
+    const row = element('tr', {}, element('th', { scope: 'row', title: found ? text('table.found', { percent }) : '' }, String(tooth.fdi),
+                                          ...(found ? [element('small', {}, ` ${percent} %`)] : [])));
     if (!tooth.rooted) {
       row.append(element('td', { class: 'why', colspan: 5 }, text('table.none') + ': ', element('span', { lang: 'en' }, tooth.refusal ?? '')));
       return row;
@@ -40,8 +48,8 @@ function rows(report: ArchReport): HTMLElement[] {
     const cells = [
       `${number(tooth.kept_crown_triangles ?? 0, 0)} / ${number(tooth.crown_triangles ?? 0, 0)}`, number(tooth.root_length_mm ?? 0, 1),
       interval ? `${number(interval[0], 1)} – ${number(interval[1], 1)}` : '–', near.length > 0 ? number(Math.min(...near), 2) : '–',
-      length === undefined ? '' : number(length, 1),
     ];
+    if (Object.keys(measured).length > 0) cells.push(length === undefined ? '' : number(length, 1));
     row.append(...cells.map((cell) => element('td', {}, cell)));
     return row;
   });
@@ -70,7 +78,8 @@ function chart(report: ArchReport, viewer: Viewer): HTMLElement {
 }
 
 export function archParts(report: ArchReport, models: Record<string, string>, viewer: Viewer): Node[] {
-  const head: TextKey[] = ['table.tooth', 'table.kept', 'table.root', 'table.interval', 'table.clearance', 'table.measured'];
+  const head: TextKey[] = ['table.tooth', 'table.kept', 'table.root', 'table.interval', 'table.clearance'];
+  if (Object.keys(measuredIn(report)).length > 0) head.push('table.measured');
   const collisions = ofRoots(report, null).filter(({ mm }) => mm < 0);
   const made = element('table', {}, element('caption', { class: 'hidden' }, text('table.caption')),
                        element('thead', {}, element('tr', {}, ...head.map((key) => element('th', { scope: 'col' }, text(key))))), element('tbody', {}, ...rows(report)));

@@ -14,6 +14,9 @@ export type Side = 'front' | 'back' | 'left' | 'right' | 'top' | 'bottom';
 /** Three directions of what is looked at, in the scan's frame. */
 export interface Directions { up: Vector3; front: Vector3 }
 
+/** What a geometry knows of itself: its mesh, its triangles in full (null: without an index), and coarse ones if they were needed. */
+interface Drawn { mesh: ViewMesh; full: BufferAttribute | null | undefined; coarse?: BufferAttribute }
+
 interface Part { tooth: ViewMesh; crown: ViewMesh; group: Group; shown: boolean }
 
 const manyTriangles = 150_000;  // beyond these, everything is drawn coarser while it turns
@@ -43,6 +46,7 @@ export class Viewer {
   private isAsked = false;
   private isCoarse = false;
   private calmTimer = 0;
+  private readyTimer = 0;
   private radius = 10;
   private readonly centre = new Vector3();
 
@@ -203,18 +207,22 @@ export class Viewer {
     this.draw();
   }
 
-  /** The point of a surface at a place of the canvas (-1 to 1 each), mm; null beside everything. */
-  pick(x: number, y: number, withGum = false): Vector3 | null {
+  /**
+   * The point of a surface at a place of the canvas (-1 to 1 each), mm; null beside everything.
+   * @param ofScan  a point of what was scanned, gum too: of a tooth's crown the one nearest to where its root was pointed at
+   */
+  pick(x: number, y: number, ofScan = false): Vector3 | null {
     const ray = new Raycaster();
     this.camera.updateMatrixWorld();  // the view may have been turned since it was drawn
     ray.setFromCamera(new Vector2(x, y), this.camera);
     const groups = [...this.parts.values()].filter((part) => part.shown).map((part) => part.group);
-    if (withGum && this.gum.visible) groups.push(this.gum);
+    if (ofScan && this.gum.visible) groups.push(this.gum);
     const meshes = groups.flatMap((group) => group.children);
     for (const hit of ray.intersectObjects(meshes, false)) {
       if (!(hit.object instanceof Mesh)) continue;
       if (this.isClipping && this.plane.distanceToPoint(hit.point) < 0) continue;
-      return hit.point.clone();
+      const part = ofScan ? [...this.parts.values()].find(({ group }) => group === hit.object.parent) : undefined;
+      return part ? nearestVertex(part.crown, hit.point) : hit.point.clone();
     }
     return null;
   }
@@ -243,6 +251,7 @@ export class Viewer {
       this.isAsked = false;
       if (this.isClipping) this.placePlane();
       this.renderer.render(this.scene, this.camera);
+      this.canvas.dataset.triangles = String(this.renderer.info.render.triangles);
       this.canvas.dataset.drawn = String(Number(this.canvas.dataset.drawn ?? '0') + 1);
     });
   }
@@ -267,8 +276,8 @@ export class Viewer {
   }
 
   private build(part: Part): void {
+    this.setCoarse(false);
     this.empty(part.group);
-    this.isCoarse = false;
     const mesh = isOfCrown(this.colouring) ? part.crown : part.tooth;
     const colours = coloursOf(mesh, this.colouring);
     // Of a closed surface nobody sees the inside, unless it is cut open; drawing it costs software renderers much.
@@ -297,6 +306,18 @@ export class Viewer {
       part.group.add(new Mesh(whole, this.clipped(material())));
     }
     part.group.visible = part.shown;
+    window.clearTimeout(this.readyTimer);
+    this.readyTimer = window.setTimeout(() => this.getReady(), calm);
+  }
+
+  /** Works out what is drawn while it turns before somebody turns it. */
+  private getReady(): void {
+    if (this.triangles <= manyTriangles) return;
+    for (const group of [this.gum, ...[...this.parts.values()].map((part) => part.group)])
+      for (const child of group.children) {
+        const { geometry } = child as Mesh;
+        if ((geometry.userData as Drawn).full !== undefined) coarseOf(geometry);
+      }
   }
 
   private geometry(mesh: ViewMesh, colours: ReturnType<typeof coloursOf> = null): BufferGeometry {
@@ -305,10 +326,11 @@ export class Viewer {
     const full = new BufferAttribute(mesh.index, 1);
     geometry.setIndex(full);
     geometry.computeVertexNormals();
-    if (colours?.per !== 'triangle') geometry.userData = { full, coarse: new BufferAttribute(coarseIndex(mesh), 1) };
+    geometry.userData = { mesh, full };
     if (colours?.per === 'vertex') geometry.setAttribute('color', new BufferAttribute(colours.linear, 3));
     if (colours?.per === 'triangle') {
       geometry = geometry.toNonIndexed();
+      geometry.userData = { mesh, full: null };
       geometry.computeVertexNormals();
       const spread = new Float32Array(3 * colours.linear.length);
       for (let t = 0; t < colours.linear.length / 3; ++t)
@@ -358,13 +380,14 @@ export class Viewer {
   private setCoarse(on: boolean): void {
     if (on === this.isCoarse) return;
     this.isCoarse = on;
+    window.clearTimeout(this.readyTimer);
     this.renderer.setPixelRatio((on ? 0.5 : 1) * Math.min(window.devicePixelRatio, 2));
     for (const group of [this.gum, ...[...this.parts.values()].map((part) => part.group)])
       for (const child of group.children) {
         const { geometry } = child as Mesh;
-        const coarse = geometry.userData['coarse'] as BufferAttribute | undefined;
-        const full = geometry.userData['full'] as BufferAttribute | undefined;
-        if (coarse && full) geometry.setIndex(on ? coarse : full);
+        const { full } = geometry.userData as Drawn;
+        if (full === undefined) continue;  // a part of a tooth, which is drawn as it is
+        geometry.setIndex(on ? coarseOf(geometry) : full);
       }
     this.draw();
   }
@@ -411,6 +434,18 @@ function split(geometry: BufferGeometry, index: Uint32Array, isFirst: (a: number
   }) as [BufferGeometry, BufferGeometry];
 }
 
+function nearestVertex(mesh: ViewMesh, to: Vector3): Vector3 {
+  const nearest = to.clone(), vertex = new Vector3();
+  let least = Infinity;
+  for (let i = 0; i + 2 < mesh.position.length; i += 3) {
+    const distance = vertex.fromArray(mesh.position, i).distanceToSquared(to);
+    if (distance >= least) continue;
+    least = distance;
+    nearest.copy(vertex);
+  }
+  return nearest;
+}
+
 /** A tooth without its crown, which all of a crown's teeth have in common. */
 function rootOf(mesh: ViewMesh): ViewMesh {
   const source = mesh.perVertex.get('source');
@@ -440,6 +475,23 @@ function coarseIndex(mesh: ViewMesh): Uint32Array {
     if (a !== b && b !== c && c !== a) coarse.push(a, b, c);
   }
   return Uint32Array.from(coarse);
+}
+
+/** By mesh: they are the same in every colour. */
+const coarseIndices = new WeakMap<ViewMesh, Uint32Array>();
+
+function coarseOf(geometry: BufferGeometry): BufferAttribute {
+  const drawn = geometry.userData as Drawn;
+  if (drawn.coarse) return drawn.coarse;
+  const { mesh } = drawn;
+  let index = coarseIndices.get(mesh);
+  if (!index) coarseIndices.set(mesh, index = coarseIndex(mesh));
+  if (drawn.full === null) {  // every corner has a vertex of its own: of those at a place the first one stands for it
+    const corner = new Uint32Array(mesh.position.length / 3);
+    for (let i = mesh.index.length - 1; i >= 0; --i) corner[mesh.index[i] as number] = i;
+    index = index.map((vertex) => corner[vertex] as number);
+  }
+  return drawn.coarse = new BufferAttribute(index, 1);
 }
 
 /** Every edge once. */

@@ -6,6 +6,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 
+import { AxeBuilder } from '@axe-core/playwright';
 import { test as base, expect, type Page } from '@playwright/test';
 
 /** The source tree: given by the build, which runs the tests in its own folder. */
@@ -31,8 +32,27 @@ async function served(): Promise<{ url: string; child: ChildProcess }> {
   return { url, child };
 }
 
+/** The mesh width that teeth are made with where a test does not ask for another: few triangles, for little time. */
+export const coarse = 1.5;
+
+interface Fixtures {
+  faults: string[];
+  e: number | null;  // mm, in place of the page's 0.5; null: as the page has it
+  coarseJobs: void;
+}
+
 /** Tests with a program of their own worker, and a page whose errors are the test's. */
-export const test = base.extend<{ faults: string[] }, { url: string }>({
+export const test = base.extend<Fixtures, { url: string }>({
+  e: [coarse, { option: true }],
+  coarseJobs: [async ({ context, e }, use) => {
+    if (e !== null)
+      await context.route('**/api/v1/jobs', async (route) => {
+        const sent = route.request().postDataJSON() as { options?: { e_mm?: number } } | null;
+        if (sent?.options?.e_mm !== 0.5) return route.continue();
+        await route.continue({ postData: JSON.stringify({ ...sent, options: { ...sent.options, e_mm: e } }) });
+      });
+    await use();
+  }, { auto: true }],
   url: [async ({}, use) => {
     const { url, child } = await served();
     await use(url);
@@ -70,6 +90,25 @@ export async function drop(page: Page, files: { name: string; bytes: Buffer }[])
   await page.dispatchEvent('#stage', 'drop', { dataTransfer: transfer });
 }
 
+/** Waits until the view is drawn otherwise than before, and gives it. */
+export async function redrawn(page: Page, before: Buffer, what: string): Promise<Buffer> {
+  let now = before;
+  await expect.poll(async () => {
+    now = await drawing(page);
+    return now.equals(before);
+  }, { message: what, intervals: [20, 50, 100] }).toBe(false);
+  return now;
+}
+
+/** Nothing that axe finds, in either theme. */
+export async function accessible(page: Page, themes: readonly ('light' | 'dark')[] = ['light', 'dark']): Promise<void> {
+  for (const theme of themes) {
+    await page.emulateMedia({ colorScheme: theme });
+    await expect(page.locator('html')).toHaveAttribute('data-theme', theme);
+    expect((await new AxeBuilder({ page }).analyze()).violations, theme).toEqual([]);
+  }
+}
+
 /** Waits until a job has ended well and is in view. */
 export async function completed(page: Page): Promise<void> {
   await expect(page.locator('#hint')).toContainText(/Done in|Fertig in/, { timeout: 60_000 });
@@ -91,10 +130,9 @@ export async function drawing(page: Page): Promise<Buffer> {
 }
 
 /**
- * A scan of two lower molars that touch (OBJ), both labelled 36 (Teeth3DS), as where two teeth were taken for one, and the place in it
- * where they meet.
+ * A scan of two lower molars that touch (OBJ) with labels (Teeth3DS): both 36, as where two teeth were taken for one, or 36 and 37.
  */
-export function twoMolars(): { scan: Buffer; labels: Buffer } {
+export function twoMolars(areTold = false): { scan: Buffer; labels: Buffer } {
   const stl = readFileSync(join(samples, 'crown_36.stl'));
   const numbers = new Map<string, number>();
   const vertices: [number, number, number][] = [];
@@ -111,9 +149,9 @@ export function twoMolars(): { scan: Buffer; labels: Buffer } {
   const xs = vertices.map(([x]) => x);
   const width = Math.max(...xs) - Math.min(...xs) - 1;  // so that one sees no gap between them
   const lines: string[] = [];
-  for (const shift of [0, width]) for (const [x, y, z] of vertices) lines.push(`v ${x + shift} ${y} ${z}`);
+  for (const shift of [0, width]) for (const [x, y, z] of vertices) lines.push(`v ${Math.fround(x + shift)} ${y} ${z}`);
   for (const shift of [0, vertices.length]) for (const corners of triangles) lines.push('f ' + corners.map((v) => v + 1 + shift).join(' '));
-  const labels = { jaw: 'lower', labels: Array.from({ length: 2 * vertices.length }, () => 36) };
+  const labels = { jaw: 'lower', labels: Array.from({ length: 2 * vertices.length }, (_, v) => (areTold && v >= vertices.length ? 37 : 36)) };
   return { scan: Buffer.from(lines.join('\n') + '\n'), labels: Buffer.from(JSON.stringify(labels)) };
 }
 
