@@ -33,8 +33,8 @@ std::vector<OutputFile> all_files(const Job& job);
 std::string saved_name(const Job& job, const std::string& name);
 
 /// One file of a job by its name: tooth.ply, tooth.stl, tooth.obj, tooth.glb, report.json, report.html, all.zip; of an
-/// arch all.zip, report.html, arch.stl, arch.obj and the names that `rhizodont arch` writes. Refusal (404) for others, (409) where there is
-/// no result.
+/// arch all.zip, report.html, arch.stl, arch.obj and the names that `rhizodont arch` writes. Refusal (404) for others,
+/// (409) where there is no result.
 /// @param model_hashes  for the pages (`ReportPage::models`)
 std::string file_of(const Job& job, const std::string& name, const std::map<std::string, std::string>& model_hashes);
 

@@ -87,7 +87,7 @@ else:
             failures.append(f"the schema lets pass an arch without {key}")
 
 # An arch whose teeth were searched for says how sure their numbers are.
-run = subprocess.run([program, "arch", str(samples / "scan_lower.ply"), "--e", "2", "--quiet", "-o", str(work / "found")],
+run = subprocess.run([program, "arch", str(samples / "scan_lower.ply"), "--e", "1", "--quiet", "-o", str(work / "found")],
                      capture_output=True, text=True)
 if run.returncode != 0:
     failures.append(f"arch without labels: exit code {run.returncode}: {run.stderr}")
