@@ -154,6 +154,11 @@ void warn_of_rounding(const ReportedInput& input, CompletionRecord& record) {
 
 void require_format_holds(const CompletedTooth& tooth, const std::filesystem::path& output) {
   if (!holds_floats_only(output) || coordinates_fit_float(tooth.mesh)) return;
+  for (std::size_t v = 0; v < tooth.mesh.vertices.size(); ++v)
+    if (tooth.source[v] == VertexSource::scan && !coordinates_fit_float({{tooth.mesh.vertices[v]}, {}}))
+      throw NoResultError(output.string() +
+                          " cannot hold this tooth: its crown's coordinates have more digits than single precision. "
+                          "Give the tooth a name in .ply.");
   throw NoResultError(output.string() +
                       " cannot hold this tooth: the crown lies so far from the origin that single precision is too "
                       "coarse for new triangles there. Move the scan to the origin, or give the tooth a name in .ply.");

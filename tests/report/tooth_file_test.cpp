@@ -78,6 +78,15 @@ TEST(ToothFile, StlThatCannotHoldItIsRefused) {
       EXPECT_NE(std::string(error.what()).find("Move the scan to the origin"), std::string::npos);
     }
   }
+  tooth = small_tooth();
+  ASSERT_EQ(tooth.source[0], VertexSource::scan);
+  tooth.mesh.vertices[0].x() = 0.1;
+  try {
+    require_format_holds(tooth, "a.stl");
+    ADD_FAILURE() << "the crown itself is no float";
+  } catch (const NoResultError& error) {
+    EXPECT_NE(std::string(error.what()).find("more digits than single precision"), std::string::npos);
+  }
 }
 
 TEST(ToothFile, WithoutColoursThereAreNone) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "serve/service.hpp"
 
+#include "base/float_bits.hpp"
 #include "mesh/append_mesh.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
@@ -309,7 +310,7 @@ MeshFile two_crowns(bool with_array, Json& labels) {
     TriangleMesh crown = load_mesh(fs::path(RHIZODONT_SOURCE_DIR) / "samples" / name).mesh;
     Point low = crown.vertices.front(), high = low;
     for (const Point& p : crown.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    for (Point& p : crown.vertices) p = (p + Point(x, 0, 0) - 0.5 * (low + high)).cast<float>().cast<double>();
+    for (Point& p : crown.vertices) p = nearest_float(p + Point(x, 0, 0) - 0.5 * (low + high));
     append_mesh(scan.mesh, crown);
     numbers.resize(scan.mesh.vertices.size(), fdi);
   }
@@ -336,7 +337,7 @@ TEST_F(ServiceTest, LabelledScanBecomesAnArch) {
   const TriangleMesh all = read_mesh(get("/api/v1/jobs/" + job + "/files/arch.ply")->body, "arch.ply").mesh;
   for (const char* name : {"arch.stl", "arch.obj"}) {
     const auto file = get("/api/v1/jobs/" + job + "/files/" + name);
-    ASSERT_EQ(file->status, 200) << name;
+    ASSERT_EQ(file->status, 200) << name << " " << file->body;
     EXPECT_EQ(read_mesh(file->body, name).mesh.triangles.size(), all.triangles.size()) << name;
   }
   const auto view = get("/api/v1/jobs/" + job + "/views/tooth-36");
