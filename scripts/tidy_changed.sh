@@ -43,5 +43,5 @@ if [ "$(wc -l <<< "$sources")" -gt "$at_most" ]; then
   exit 0
 fi
 echo "clang-tidy on $(wc -l <<< "$sources") sources that differ from $base"
-xargs -P "${JOBS:-$(nproc)}" -n 2 clang-tidy -p build --quiet --warnings-as-errors='*' --extra-arg=-Wno-undefined-internal \
+xargs -P "${JOBS:-$(nproc)}" -n 2 clang-tidy -p build --quiet --warnings-as-errors='*' --extra-arg=-Wno-undefined-internal --extra-arg=-Wno-unknown-warning-option \
   <<< "$sources"
