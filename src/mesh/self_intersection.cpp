@@ -239,6 +239,7 @@ std::vector<Pair> candidate_pairs(const Soup& soup, std::size_t clear) {
          done);
     done.insert(done.end(), crowd.begin(), crowd.end());
     std::vector<ClosedBox> directions;
+    directions.reserve(crowd.size());
     for (const int t : crowd) directions.push_back(box_of_directions(soup, t, crowds.hubs[k]));
     note(BoxTree(directions).meeting_pairs(may_meet(crowd, crowd)), crowd, crowd);
   }
