@@ -24,20 +24,23 @@ target_link_libraries(rhizodont_library
 target_include_directories(rhizodont_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(rhizodont_library INTERFACE cxx_std_20)
 
-install(TARGETS rhizodont_library EXPORT RhizodontTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS rhizodont RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS rhizodont_library EXPORT RhizodontTargets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
+install(TARGETS rhizodont RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
 if(RHIZODONT_TRAINING)
   # The folder of the BLAS that torch needs, see src/learning/CMakeLists.txt.
   set_target_properties(rhizodont-train PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
-  install(TARGETS rhizodont-train RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS rhizodont-train RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT training)
 endif()
 install(DIRECTORY include/rhizodont ${CMAKE_CURRENT_BINARY_DIR}/include/rhizodont
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.hpp")
-install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rhizodont/models)
-install(EXPORT RhizodontTargets NAMESPACE Rhizodont:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont)
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
+install(DIRECTORY models/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rhizodont/models COMPONENT models)
+install(DIRECTORY samples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rhizodont/samples COMPONENT program)
+install(EXPORT RhizodontTargets NAMESPACE Rhizodont:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont
+  COMPONENT development)
 configure_package_config_file(cmake/RhizodontConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont)
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfigVersion.cmake
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont)
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont COMPONENT development)
