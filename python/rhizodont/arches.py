@@ -7,11 +7,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping, Optional, Sequence
 
-import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from .mesh import Floats, Ints, Mesh, mesh_of
+from .mesh import Floats, Ints, Mesh, mesh_of, whole_numbers
 from .teeth import Models, Tooth, tooth_options
 
 ArchProgress = Callable[[int, int, int], None]
@@ -123,7 +122,7 @@ def complete_arch(
     (`tooth_options`), by default with the skirt dropped and defects mended. A tooth that is refused does not stop the
     others. Raises InputError, UsageError."""
     of = mesh_of(scan)
-    numbers = segment(of, models).labels if labels is None else np.ascontiguousarray(labels, dtype=np.int32)
+    numbers = segment(of, models).labels if labels is None else whole_numbers(labels, "Labels")
     tooth = tooth_options(_core.arch_tooth_options(), **options)
     done = _core.arch(
         of.vertices,

@@ -31,7 +31,8 @@ class Mesh:
     """What reading the file found and mended, a sentence each."""
 
     def save(self, path: PathLike) -> None:
-        """Writes .ply, .stl, .obj or .glb; attributes of vertices to .ply alone."""
+        """Writes .ply, .stl, .obj or .glb. Attributes of vertices go to .ply alone, as float32 (`source` as uint8);
+        those of triangles are not written."""
         _core.save(os.fspath(path), self.vertices, self.triangles, dict(self.vertex_attributes))
 
     def measure(self) -> dict[str, Any]:
@@ -71,8 +72,18 @@ def measure(mesh: Any) -> dict[str, Any]:
     return figures
 
 
+def whole_numbers(values: Any, what: str) -> Ints:
+    """As int32. Raises InputError where that would change a value."""
+    given = np.asarray(values)
+    with np.errstate(invalid="ignore"):
+        numbers = np.ascontiguousarray(given, dtype=np.int32)
+    if not np.array_equal(numbers, given):
+        raise _core.InputError(f"{what} must be whole numbers below 2^31.")
+    return numbers
+
+
 def _of_arrays(vertices: Any, triangles: Any) -> Mesh:
-    return Mesh(np.ascontiguousarray(vertices, dtype=np.float64), np.ascontiguousarray(triangles, dtype=np.int32))
+    return Mesh(np.ascontiguousarray(vertices, dtype=np.float64), whole_numbers(triangles, "Vertices of triangles"))
 
 
 def _of_vtk(data: Any) -> Mesh:

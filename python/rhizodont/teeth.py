@@ -193,7 +193,10 @@ def complete(crown: Any, models: Models, *, progress: Optional[Progress] = None,
 
 
 def prepare(crown: Any, models: Models, *, progress: Optional[Progress] = None, **options: Any) -> PreparedTooth:
-    """The first half of `complete`."""
+    """The first half of `complete`. What is wished of the root is `finish`'s to take: TypeError if it is given here."""
+    late = {"root_length", "tip", "torque", "bend", "transition"} & options.keys()
+    if late:
+        raise TypeError(f"{', '.join(sorted(late))}: an option of finish, not of prepare")
     of = mesh_of(crown)
     core = _core.prepare(of.vertices, of.triangles, models._completion, tooth_options(**options), progress)
     return PreparedTooth(core)

@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -215,6 +216,7 @@ void require_in_range(const FuseOptions& options) {
 
 FusedTooth fuse_crown_and_root(const PreparedCrown& crown, const TriangleMesh& guiding_surface,
                                const Eigen::Vector3d& growth_axis, const FuseOptions& options) {
+  assert(self_intersecting_triangles(crown.mesh).empty());
   require_in_range(options);
   FuseSeconds spent;
   Stopwatch watch;

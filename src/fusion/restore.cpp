@@ -17,6 +17,7 @@
 #include "rhizodont/error.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -318,6 +319,7 @@ JoinedTooth restore_crown(const TriangleMesh& crown, const Joining& joining, con
     std::vector<std::pair<int, int>> cuts;
     if (options.test_cuts) cuts = self_intersecting_triangles(filled.mesh, clear);
     if (cuts.empty()) {
+      assert(!options.test_cuts || self_intersecting_triangles(filled.mesh).empty());
       JoinedTooth tooth;
       tooth.mesh = filled.mesh;
       tooth.crown_vertices = static_cast<int>(crown.vertices.size());

@@ -21,7 +21,8 @@ struct SurfacePlace {
 /// follows the surface downhill, so it is fast, and a point between two sheets stays on its own.
 class SurfaceWalk {
  public:
-  /// Keeps a reference to `surface`. Throws what `triangle_adjacency` throws.
+  /// Keeps a reference to `surface`. Throws what `triangle_adjacency` throws, and InputError for an empty surface or a
+  /// vertex that is not finite.
   explicit SurfaceWalk(const TriangleMesh& surface);
 
   /// The locally closest place, searched from triangle `start`.

@@ -197,8 +197,8 @@ ClosedBox box_of_directions(const Soup& soup, int triangle, int corner) {
 /// Those of the triangles whose boxes meet the box around all others.
 std::vector<int> near_the_others(const Soup& soup, const std::vector<int>& triangles, const std::vector<int>& others) {
   std::vector<int> near;
+  if (triangles.empty() || others.empty()) return near;
   const std::vector<ClosedBox> boxes = boxes_of(soup, others);
-  if (boxes.empty()) return near;
   ClosedBox around = boxes.front();
   for (const ClosedBox& box : boxes) around.extend(box);
   const std::vector<ClosedBox> own = boxes_of(soup, triangles);

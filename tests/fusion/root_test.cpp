@@ -88,6 +88,33 @@ TEST(EdgeLengths, FollowTheBorderAndFade) {
   EXPECT_EQ(s.lengths.at({0, 0, -5}), 0.3);
 }
 
+TEST(EdgeLengths, AreThoseOfAllBorderEdges) {
+  // Two loops, edges of very different lengths: a cap with a hole, pulled along x.
+  TriangleMesh crown = cap(4, 5, 0.5);
+  crown.triangles.erase(crown.triangles.begin() + static_cast<std::ptrdiff_t>(crown.triangles.size() / 2));
+  for (Point& p : crown.vertices) p.x() *= 1 + 0.4 * p.x();
+  const CrownBorder border = find_crown_border(crown);
+  constexpr double root = 0.3, growth = 0.9, shrinkage = 0.15;
+  const EdgeLengths lengths(crown, border, root, growth, shrinkage);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> anywhere(-8, 8);
+  int other_than_root = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Point p(anywhere(random), anywhere(random), anywhere(random));
+    double longest = std::numeric_limits<double>::max(), wanted = root;
+    for (const auto& [from, to] : border.half_edges) {
+      const Point &a = crown.vertices[static_cast<std::size_t>(from)],
+                  &b = crown.vertices[static_cast<std::size_t>(to)];
+      const double distance = (p - 0.5 * (a + b)).norm(), length = (a - b).norm();
+      longest = std::min(longest, length + growth * distance);
+      wanted = std::max(wanted, length - shrinkage * distance);
+    }
+    EXPECT_EQ(lengths.at(p), std::min(longest, wanted)) << p.transpose();
+    if (lengths.at(p) != root) ++other_than_root;
+  }
+  EXPECT_GT(other_than_root, 100);
+}
+
 TEST(CrownBorder, NotchOpenToTheRoot) {
   // A square of four squares without one: the border turns by a right angle that opens outward.
   TriangleMesh mesh;

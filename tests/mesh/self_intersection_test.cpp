@@ -106,6 +106,24 @@ TriangleMesh wild_fan(int triangles) {
   return fan;
 }
 
+/// Pairs that a test of the whole finds, but for those among the first `clear` triangles.
+Pairs without_clear_pairs(const TriangleMesh& mesh, int clear) {
+  Pairs all = self_intersecting_triangles(mesh);
+  std::erase_if(all, [&](const auto& pair) { return pair.first < clear && pair.second < clear; });
+  return all;
+}
+
+TEST(SelfIntersection, PairsThatAreKnownToBeClearAreLeftOut) {
+  const TriangleMesh spheres = together(sphere(3), sphere(3), {0.5, 0.1, 0.2}), fan = wild_fan(700);
+  ASSERT_FALSE(self_intersecting_triangles(spheres).empty());
+  for (const TriangleMesh& mesh : {spheres, fan}) {
+    const int count = static_cast<int>(mesh.triangles.size());
+    for (const int clear : {0, 1, count / 3, count / 2, count - 2, count})
+      EXPECT_EQ(self_intersecting_triangles(mesh, static_cast<std::size_t>(clear)), without_clear_pairs(mesh, clear))
+          << clear << " of " << count;
+  }
+}
+
 TEST(SelfIntersection, ACrowdAroundOneVertexIsSearchedByDirectionsWithTheSameResult) {
   const TriangleMesh fan = wild_fan(700);
   const Pairs found = self_intersecting_triangles(fan);

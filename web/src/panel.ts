@@ -213,7 +213,7 @@ function fileLinks(job: Job): HTMLElement {
   const links = job.tooth
     ? ['ply', 'stl', 'obj', 'glb'].map((ending) => mesh('tooth', ending)).concat(
         link('report.html', text('files.report'), stem + '.html'), link('report.json', text('files.json'), stem + '.json'))
-    : [link('report.html', text('files.report'), 'arch.html'), ...['ply', 'stl', 'obj'].map((ending) => mesh('arch', ending)), link('arch.glb', 'GLB', 'arch.glb'), link('arch.json', text('files.json'), 'arch.json')];
+    : [link('report.html', text('files.report'), 'arch.html'), ...(job.formats?.length === 0 ? [] : ['ply', 'stl', 'obj'].map((ending) => mesh('arch', ending))), link('arch.glb', 'GLB', 'arch.glb'), link('arch.json', text('files.json'), 'arch.json')];
   return section('section.files', element('div', { class: 'buttons' }, ...links, link('all.zip', text('files.all'), stem + '.zip')));
 }
 
