@@ -18,6 +18,7 @@ namespace {
 
 struct CompletionCommand {
   std::string data;
+  std::string population;
   std::string export_to;
   bool overwrite = false;
   CompletionSampleOptions samples;
@@ -26,7 +27,9 @@ struct CompletionCommand {
 
 void train(const CompletionCommand& command) {
   prepare_for_training();
-  const ToothFamilies families = load_tooth_families(command.data);
+  FamilyLoadOptions population;
+  population.population = command.population;
+  const ToothFamilies families = load_tooth_families(command.data, population);
   CompletionTrainingOptions options = command.options;
   options.loop.progress = print_progress;
   const CompletionTrainingResult result = train_completion(
@@ -64,6 +67,9 @@ void add_completion_command(CLI::App& app) {
   TrainingLoopOptions& o = command->options.loop;
   CLI::App* train_app = app.add_subcommand("completion", "Train the completion network on generated teeth");
   auto* data = train_app->add_option("--data", command->data, "Folder with templates/, anatomy.csv and crowns/ssm/");
+  train_app->add_option(
+      "--population", command->population,
+      "JSON table of lengths, roots and curves by tooth; without it the middle of published populations");
   train_app->add_option("--out", o.folder, "Folder of checkpoints and best weights")->required();
   train_app->add_flag("--resume", o.resume, "Go on from the folder's checkpoint");
   train_app->add_option("--start-from", o.start_from,

@@ -5,6 +5,7 @@
 #include "families/crown_crop.hpp"
 #include "families/mean_arch.hpp"
 #include "families/mean_teeth.hpp"
+#include "families/person.hpp"
 #include "families/synthetic_files.hpp"
 #include "families/tooth_family.hpp"
 #include "pictures/render.hpp"
@@ -33,6 +34,8 @@ struct SynthCommand {
   std::string output;
   std::string sheet;
   std::string atlas, arch;
+  std::string population;
+  bool person = false;
   bool crowns = false;
   bool clean_cut = false;
   bool skirts = false;
@@ -113,7 +116,8 @@ void require_safe_places(const SynthCommand& command) {
 void write_tooth(const SynthCommand& command, const ToothFamilies& families, int fdi, std::uint64_t seed,
                  Drawing& drawing) {
   const bool right_side = is_right_side(fdi);
-  const SyntheticTooth tooth = generate_tooth(families, tooth_type_of_fdi(fdi), seed);
+  const SyntheticTooth tooth = command.person ? generate_tooth_of_person(families, fdi, draw_person(seed))
+                                              : generate_tooth(families, tooth_type_of_fdi(fdi), seed);
   const CroppedCrown cropped = crop(command, tooth, seed);
   const MeshFile file = synthetic_tooth_file(tooth, cropped.line, right_side);
   const auto tooth_name = file_name(command, "tooth", fdi, seed);
@@ -204,8 +208,20 @@ SynthArches arches_of(const SynthCommand& command) {
   return arches;
 }
 
-void run(const SynthCommand& command) {
-  if (command.arches) return write_arches(arches_of(command));
+/// Teeth of people are whole dentitions where no teeth are named.
+SynthCommand with_teeth_of_people(SynthCommand command) {
+  if (!command.person) return command;
+  if (command.output.empty() || command.skirts)
+    throw UsageError("Teeth of people go to a folder: --person with -o FOLDER, without --skirts.");
+  const bool given_none = command.fdi.empty();
+  for (int fdi = 11; given_none && fdi <= 48; ++fdi)
+    if (is_permanent_tooth(fdi)) command.fdi.push_back(fdi);
+  return command;
+}
+
+void run(const SynthCommand& given) {
+  if (given.arches) return write_arches(arches_of(given));
+  const SynthCommand command = with_teeth_of_people(given);
   if (command.output.empty() && command.atlas.empty() && command.arch.empty() && command.sheet.empty())
     throw UsageError(
         "Say where to: -o FOLDER for teeth, --sheet PNG for a picture, --atlas FILE for mean crowns, "
@@ -213,6 +229,7 @@ void run(const SynthCommand& command) {
   if (!command.output.empty() && command.fdi.empty()) throw UsageError("Say which tooth: --type FDI, such as 36.");
   require_safe_places(command);
   FamilyLoadOptions options;
+  options.population = command.population;
   if (command.edge_mm > 0) options.vertices = 20000;  // finer than the scan to be made
   const ToothFamilies families = load_tooth_families(command.data, options);
   if (!command.atlas.empty()) write_atlas(command, families);
@@ -233,6 +250,11 @@ void add_synth_command(CLI::App& app) {
   synth->add_option("--seed", command->seed, "Number of the first; each tooth depends on its number alone")
       ->capture_default_str();
   synth->add_option("-o,--output", command->output, "Folder for tooth_FDI_SEED.ply (and crown_FDI_SEED.ply)");
+  synth->add_option("--population", command->population,
+                    "JSON table of lengths, roots and curves by tooth; without it the middle of published populations");
+  synth->add_flag("--person", command->person,
+                  "Teeth of one person for each number (--count people), alike as one person's are; all 32 without "
+                  "--type");
   synth->add_flag("--crowns", command->crowns, "Write the cropped crowns too");
   synth->add_flag("--skirts", command->skirts,
                   "Write crowns with skirts instead, labelled (skirt_FDI_SEED.ply); half of them are mirrored");

@@ -32,9 +32,9 @@ struct Unknown {
 };
 
 std::vector<Unknown> unknowns() {
-  const auto lean = [](ToothVariation& v) { v.lean_degrees = 0; };
-  const auto length = [](ToothVariation& v) { v.root_length_mm = 0; };
-  const auto bend = [](ToothVariation& v) { v.distal_bend_mm = 0; };
+  const auto lean = [](ToothVariation& v) { v.lean = 0; };
+  const auto length = [](ToothVariation& v) { v.root_length = 0; };
+  const auto bend = [](ToothVariation& v) { v.distal_bend_mm = v.curvature = 0; };
   const auto shape = [](ToothVariation& v) { v.root_thickness = v.taper = 0; };
   const auto roots = [](ToothVariation& v) { v.divergence_mm = v.trunk = 0; };
   return {{"nothing (spacing of the samples)", [](ToothVariation&) {}},

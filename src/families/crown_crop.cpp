@@ -136,7 +136,8 @@ double GumLine::height(const JunctionHeight& junction, double x, double y) const
     const double d = angle_between(angle, side == 0 ? std::numbers::pi : 0.0) / gap_width[side];
     z += gap_mm[side] * std::exp(-0.5 * d * d);
   }
-  return z;
+  const double beside = angle_between(angle, side_angle) / side_width;
+  return z + side_mm * std::exp(-0.5 * beside * beside);
 }
 
 Eigen::Vector2d slope_across_long_axis(const SyntheticTooth& tooth) {
@@ -146,34 +147,72 @@ Eigen::Vector2d slope_across_long_axis(const SyntheticTooth& tooth) {
   return slope.norm() < steepest ? slope : Eigen::Vector2d::Zero();
 }
 
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double gum_lean = 4.5 * degree;  // along x and y
+constexpr double steep_share = 0.08, least_steep = 15 * degree, most_steep = 35 * degree;
+constexpr double contact_share = 0.5;  // of crowns that lack their surface below the contacts
+
+Eigen::Vector2d draw_slope(double deviation, RandomStream& random) {
+  const double x = random.normal(0.0, deviation), y = random.normal(0.0, deviation);
+  return {std::tan(x), std::tan(y)};
+}
+
+// The gum's own line: flatter than the junction, with papillae between the teeth. Lean and one-sided margins: as wide
+// as the borders of labelled scans (bench_gum_lines).
+void draw_gum_margin(GumLine& line, double crown_height, RandomStream& random) {
+  line.junction_share = random.uniform(0.4, 1.15);
+  const double kind = random.uniform();
+  line.offset_mm = kind < 0.7    ? random.uniform(-0.6, 1.6)
+                   : kind < 0.93 ? random.uniform(-1.0, 3.0)
+                                 : random.uniform(-2.0, 4.0);
+  line.slope = draw_slope(gum_lean, random);
+  if (random.chance(steep_share)) {
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    const double lean = std::tan(random.uniform(least_steep, most_steep));
+    line.slope = lean * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  }
+  if (random.chance(0.3)) {
+    line.side_mm = random.uniform(0.5, 3.0);
+    line.side_angle = random.uniform(0, 2 * std::numbers::pi);
+    line.side_width = random.uniform(0.5, 1.2);
+  }
+  // Between neighbours that touch, no scanner sees the surface below the contact; behind the last tooth it does.
+  if (random.chance(contact_share)) {
+    for (std::size_t side = 0; side < 2; ++side) {
+      line.gap_mm[side] = random.chance(0.85) ? crown_height * random.uniform(0.25, 0.8) : 0.0;
+      line.gap_width[side] = random.uniform(0.3, 0.65);
+    }
+  }
+}
+
+}  // namespace
+
 GumLine draw_gum_line(const SyntheticTooth& tooth, double paper_share, double gap_probability, RandomStream& random) {
   GumLine line;
   const double kind = random.uniform();
-  constexpr double degree = std::numbers::pi / 180;
   for (std::size_t k = 0; k < line.wave_mm.size(); ++k) {
     line.wave_mm[k] = random.normal(0.0, 0.22 / static_cast<double>(k + 1));
     line.wave_phase[k] = random.uniform(0, 2 * std::numbers::pi);
   }
-  double tilt = 2.5 * degree;
-  Eigen::Vector2d level = Eigen::Vector2d::Zero();
+  constexpr double trimmed_lean = 2.5 * degree;
   if (kind < paper_share) {
     const double length = tooth.crown_height + tooth.root_length;
     line.junction_share = random.uniform(0.0, 0.3);
     line.offset_mm = tooth.crown_height - length * random.uniform(1.0 / 8, 1.0 / 2);
-    level = slope_across_long_axis(tooth);
+    line.slope = slope_across_long_axis(tooth) + draw_slope(trimmed_lean, random);
   } else if (kind < paper_share + 0.35 * (1 - paper_share)) {  // a crown trimmed from a whole tooth: nearly flat
     line.junction_share = random.uniform(0.0, 0.35);
     line.offset_mm = random.uniform(-0.8, 2.2);
-    level = slope_across_long_axis(tooth);
-  } else {  // the gum's own line: flatter than the junction, with papillae between the teeth
-    line.junction_share = random.uniform(0.4, 1.15);
-    line.offset_mm = random.chance(0.75) ? random.uniform(-0.6, 1.6) : random.uniform(-1.0, 3.0);
-    tilt = 5.5 * degree;
+    line.slope = slope_across_long_axis(tooth) + draw_slope(trimmed_lean, random);
+  } else {
+    draw_gum_margin(line, tooth.crown_height, random);
   }
-  line.slope = level + Eigen::Vector2d(std::tan(random.normal(0.0, tilt)), std::tan(random.normal(0.0, tilt)));
-  if (random.chance(gap_probability)) {
+  if (random.chance(gap_probability) && line.gap_mm[0] <= 0 && line.gap_mm[1] <= 0) {
     for (std::size_t side = 0; side < 2; ++side) {
-      line.gap_mm[side] = random.chance(0.7) ? random.uniform(0.0, 2.2) : 0.0;
+      const double most = random.chance(0.2) ? 4.0 : 2.2;
+      line.gap_mm[side] = random.chance(0.7) ? random.uniform(0.0, most) : 0.0;
       line.gap_width[side] = random.uniform(0.15, 0.45);
     }
   }
@@ -270,9 +309,12 @@ void add_skirt_remains(TriangleMesh& crown, double width_mm, RandomStream& rando
 }
 
 CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn) {
+  return frame_of_crop(crown, growth_axis(crown), turn);
+}
+
+CanonicalFrame frame_of_crop(const TriangleMesh& crown, const Eigen::Vector3d& axis, double turn) {
   CanonicalFrame frame;
-  const Eigen::Quaterniond upright =
-      Eigen::Quaterniond::FromTwoVectors(growth_axis(crown), Eigen::Vector3d::UnitZ().eval());
+  const Eigen::Quaterniond upright = Eigen::Quaterniond::FromTwoVectors(axis, Eigen::Vector3d::UnitZ().eval());
   frame.rotation = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix() * upright.toRotationMatrix();
   frame.centre = area_centroid(crown);
   return frame;

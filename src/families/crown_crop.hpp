@@ -21,6 +21,9 @@ struct GumLine {
   std::array<double, 2> gap_mm{};                   ///< missing surface at the contacts (towards -x and +x)
   std::array<double, 2> gap_width{0.3, 0.3};        ///< half width of these notches, radians
 
+  double side_mm = 0;                     ///< how much higher it stands on one side
+  double side_angle = 0, side_width = 1;  ///< that side's direction and half width, radians
+
   /// Height of the line for a position around the axis, millimetres in the tooth's frame.
   double height(const JunctionHeight& junction, double x, double y) const;
 };
@@ -30,9 +33,10 @@ struct GumLine {
 /// roots leave the crown's width as the longest extent.
 Eigen::Vector2d slope_across_long_axis(const SyntheticTooth& tooth);
 
-/// How scans end: 85 in 100 near the junction, with waves, papillae and tilt, a third of them across the tooth's long
-/// axis like crowns trimmed from whole teeth; the rest across that axis at 1/2 to 1/8 of the tooth's length
-/// (paper, 3.3). `paper_share` is that rest, `gap_probability` the share with notches at the contacts.
+/// How scans end: near the junction, with waves, papillae, tilt and sides that stand higher, a third of them across the
+/// tooth's long axis like crowns trimmed from whole teeth, the others along gum lines: one in twelve of these leans by
+/// 15 to 35 degrees, half lack their surface below the contacts. The rest are cut across the long axis at 1/2 to 1/8 of
+/// the tooth's length (paper, 3.3). `paper_share` is that rest, `gap_probability` the share with notches at contacts.
 GumLine draw_gum_line(const SyntheticTooth& tooth, double paper_share, double gap_probability, RandomStream& random);
 
 /// The part of the tooth above the gum line, cut through the triangles; the piece that holds the highest vertex.
@@ -58,5 +62,7 @@ void add_skirt_remains(TriangleMesh& crown, double width_mm, RandomStream& rando
 /// Axis and centre from an open crown in the generator's own frame; about the axis that frame, turned by `turn`
 /// radians.
 CanonicalFrame frame_of_crop(const TriangleMesh& crown, double turn);
+/// The same about another axis (unit, from root to crown).
+CanonicalFrame frame_of_crop(const TriangleMesh& crown, const Eigen::Vector3d& axis, double turn);
 
 }  // namespace rhizodont

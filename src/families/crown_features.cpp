@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 namespace rhizodont {
@@ -17,13 +18,20 @@ double crown_top(const SyntheticTooth& tooth) {
   return top;
 }
 
-// Cusps and edges ground down to a facet, flat or a little hollow; a second, lower facet on one side for the teeth that
-// are worn unevenly.
-void wear(SyntheticTooth& tooth, const ToothVariation& variation, RandomStream& random) {
+// Height that a worn tooth has lost: most have lost little, some a great deal, one in twelve up to half of its crown.
+// `rank` among worn teeth, 0..1, 1 the most worn.
+double lost_height(double rank, double top, double wear_mm) {
+  constexpr double much_worn = 11.0 / 12, least = 0.25, most = 0.5;
+  const double usual = std::min(wear_mm * rank * rank, least * top);
+  if (rank < much_worn || wear_mm <= 0) return usual;
+  return std::max(usual, top * (least + (most - least) * (rank - much_worn) / (1 - much_worn)));
+}
+
+// Cusps and edges ground down to a facet, flat or a little hollow, as dentine wears before enamel does; a second, lower
+// facet on one side for the teeth that are worn unevenly.
+void wear(SyntheticTooth& tooth, double rank, const ToothVariation& variation, RandomStream& random) {
   const double top = crown_top(tooth);
-  // Most worn teeth have lost little, some a great deal.
-  const double share = random.uniform();
-  const double loss = std::min(variation.wear_mm * share * share, 0.4 * top);
+  const double loss = lost_height(rank, top, variation.wear_mm);
   const Eigen::Vector2d slope(random.normal(0.0, 0.08), random.normal(0.0, 0.14));
   const double hollow = random.uniform(0.0, 0.02) * std::min(1.0, loss);
   for (Point& p : tooth.mesh.vertices) {
@@ -68,10 +76,12 @@ void put_bracket(SyntheticTooth& tooth, RandomStream& random) {
 
 }  // namespace
 
-void mark_crown(SyntheticTooth& tooth, const ToothVariation& variation, RandomStream& random) {
-  const bool is_worn = random.chance(variation.wear_share), is_decayed = random.chance(variation.decay_share);
-  const bool has_bracket = random.chance(variation.bracket_share);
-  if (is_worn) wear(tooth, variation, random);
+void mark_crown(SyntheticTooth& tooth, const ToothVariation& variation, const std::optional<double>& wear_rank,
+                RandomStream& random) {
+  const double own = random.uniform(), rank = wear_rank ? 0.5 * std::erfc(-*wear_rank / std::numbers::sqrt2) : own;
+  const bool is_decayed = random.chance(variation.decay_share), has_bracket = random.chance(variation.bracket_share);
+  if (rank > 1 - variation.wear_share)
+    wear(tooth, (rank - 1 + variation.wear_share) / variation.wear_share, variation, random);
   if (is_decayed) hollow_out(tooth, random);
   if (has_bracket) put_bracket(tooth, random);
 }

@@ -5,10 +5,16 @@
 #include "base/random_stream.hpp"
 #include "families/tooth_family.hpp"
 
+#include <optional>
+
 namespace rhizodont {
 
 /// Life's marks on a crown: wear of cusps and edges, a decay cavity or a lost corner, a bracket or attachment on the
 /// cheek's side. Moves vertices of `tooth.mesh` in place; needs mesh and crown labels, in the tooth's frame.
-void mark_crown(SyntheticTooth& tooth, const ToothVariation& variation, RandomStream& random);
+/// @param wear_rank  standard normal: the share ToothVariation::wear_share with the highest is worn, more with its
+/// rank;
+///                   none: drawn
+void mark_crown(SyntheticTooth& tooth, const ToothVariation& variation, const std::optional<double>& wear_rank,
+                RandomStream& random);
 
 }  // namespace rhizodont

@@ -83,11 +83,26 @@ Eigen::Vector3d crown_centre(const TriangleMesh& mesh, const std::vector<std::ui
   return sum / count;
 }
 
-// Neighbours in the arch share forms; a first upper premolar has a single root in about 40 % of people, a second one
-// two roots in about 10 %.
-std::vector<TemplateLoan> possible_loans() {
-  return {{1, 0, 0.06}, {3, 4, 0.35},   {4, 3, 0.10},   {5, 6, 0.10},   {6, 5, 0.15},   {7, 6, 0.30},  {8, 9, 0.25},
-          {9, 8, 0.25}, {11, 12, 0.10}, {12, 11, 0.15}, {13, 14, 0.08}, {14, 13, 0.12}, {15, 14, 0.30}};
+// Neighbours in the arch share forms; a first upper premolar with a single root is grown as a second one, and the other
+// way round. Canines resemble no neighbour.
+std::vector<TemplateLoan> possible_loans(const Population& population) {
+  constexpr std::array<std::pair<int, int>, 13> pairs{{{1, 0},
+                                                       {3, 4},
+                                                       {4, 3},
+                                                       {5, 6},
+                                                       {6, 5},
+                                                       {7, 6},
+                                                       {8, 9},
+                                                       {9, 8},
+                                                       {11, 12},
+                                                       {12, 11},
+                                                       {13, 14},
+                                                       {14, 13},
+                                                       {15, 14}}};
+  std::vector<TemplateLoan> loans;
+  for (const auto& [type, from] : pairs)
+    loans.push_back({type, from, population.teeth[static_cast<std::size_t>(type)].neighbour_share});
+  return loans;
 }
 
 TriangleMesh enamel(const FamilyTemplate& tooth) {
@@ -240,7 +255,10 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
     require_ranges("the tooth families", {{"types", type, OptionRange::at_least(0).below(tooth_type_count)}});
   constexpr double usual_crown_share = 0.38;
   ToothFamilies families;
+  families.population = options.population.empty() ? default_population() : load_population(options.population);
   families.dimensions = read_dimensions(folder / "anatomy.csv");
+  for (std::size_t type = 0; type < families.dimensions.size(); ++type)
+    families.dimensions[type].root_length = families.population.teeth[type].root_length_mm;
   std::array<MeshFile, tooth_type_count> files;
   std::array<std::vector<std::uint8_t>, tooth_type_count> crowns;
   std::vector<Eigen::Vector3d> centres(tooth_type_count);
@@ -271,7 +289,7 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
     buccal[t] = buccal_direction(arch, static_cast<std::size_t>(at));
     families.templates[t] = analyse_template(files[t].mesh, crowns[t], buccal[t], options.vertices);
   });
-  for (const TemplateLoan& loan : possible_loans()) {
+  for (const TemplateLoan& loan : possible_loans(families.population)) {
     const auto loaded = [&wanted](int type) { return std::find(wanted.begin(), wanted.end(), type) != wanted.end(); };
     if (loaded(loan.type) && loaded(loan.from)) families.loans.push_back(loan);
   }

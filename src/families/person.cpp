@@ -10,22 +10,45 @@
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace rhizodont {
 namespace {
 
 void require_in_range(const PersonVariation& persons) {
-  for (const SharedVariance& shared : {persons.size, persons.root_length, persons.root_thickness})
+  for (const SharedVariance& shared : {persons.size, persons.root_length, persons.root_thickness, persons.wear})
     require_ranges("a person's teeth",
                    {{"of_person", shared.of_person, OptionRange::at_least(0).at_most(1)},
                     {"of_pair", shared.of_pair, OptionRange::at_least(0).at_most(1 - shared.of_person)}});
-  require_ranges("a person's teeth", {{"worn_share", persons.worn_share, OptionRange::at_least(0).at_most(1)}});
+  require_ranges("a person's teeth", {{"age_of_wear", persons.age_of_wear, share_range},
+                                      {"youngest", persons.youngest, OptionRange::at_least(0)},
+                                      {"oldest", persons.oldest, OptionRange::above(persons.youngest)},
+                                      {"mature_years", persons.mature_years, OptionRange::at_least(0)}});
 }
 
 double mixed(const SharedVariance& shared, double of_person, double of_pair, double own) {
   return std::sqrt(shared.of_person) * of_person + std::sqrt(shared.of_pair) * of_pair +
          std::sqrt(std::max(0.0, 1 - shared.of_person - shared.of_pair)) * own;
+}
+
+/// The standard normal number that a share `rank` of all lies below; by halving.
+double normal_of_rank(double rank) {
+  double low = -6, high = 6;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (0.5 * std::erfc(-middle / std::numbers::sqrt2) < rank ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+/// Of immature teeth among all, those of the young, so that on the whole there are as many as elsewhere.
+double immature_share(const PersonDraw& person, const PersonVariation& persons, int type, double share) {
+  constexpr double third_molars_later = 5;
+  const double until = persons.mature_years + (type % 8 == 7 ? third_molars_later : 0);
+  const double young = std::clamp((until - persons.youngest) / (persons.oldest - persons.youngest), 0.0, 1.0);
+  return person.age_years(persons) < until ? std::min(1.0, share / young) : 0.0;
 }
 
 /// Streams of one person's seed; a person's own is 0, and those of the types follow.
@@ -40,10 +63,15 @@ PersonDraw draw_person(std::uint64_t seed) {
   person.size = random.normal();
   person.root_length = random.normal();
   person.root_thickness = random.normal();
-  person.wear = random.uniform();
-  for (auto* of_pairs : {&person.pair_size, &person.pair_root_length, &person.pair_root_thickness})
+  person.wear = random.normal();
+  person.age_rank = random.uniform();
+  for (auto* of_pairs : {&person.pair_size, &person.pair_root_length, &person.pair_root_thickness, &person.pair_wear})
     for (double& z : *of_pairs) z = random.normal();
   return person;
+}
+
+double PersonDraw::age_years(const PersonVariation& persons) const {
+  return persons.youngest + age_rank * (persons.oldest - persons.youngest);
 }
 
 SyntheticTooth generate_tooth_of_person(const ToothFamilies& families, int fdi, const PersonDraw& person,
@@ -57,9 +85,11 @@ SyntheticTooth generate_tooth_of_person(const ToothFamilies& families, int fdi, 
   shared.root_length = mixed(persons.root_length, person.root_length, person.pair_root_length[pair], own.normal());
   shared.root_thickness =
       mixed(persons.root_thickness, person.root_thickness, person.pair_root_thickness[pair], own.normal());
+  const double of_age = std::sqrt(persons.age_of_wear) * normal_of_rank(person.age_rank) +
+                        std::sqrt(1 - persons.age_of_wear) * person.wear;
+  shared.wear = mixed(persons.wear, of_age, person.pair_wear[pair], own.normal());
   ToothVariation of_person = variation;
-  const bool is_worn = person.wear > 1 - variation.wear_share;
-  of_person.wear_share = is_worn ? persons.worn_share : std::min(0.1, variation.wear_share);
+  of_person.open_apex_share = immature_share(person, persons, type, variation.open_apex_share);
   return generate_tooth(families, type, person.seed, of_person, shared);
 }
 

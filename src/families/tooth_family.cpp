@@ -77,13 +77,14 @@ void add_crown_form(const ToothFamilies& families, int type, int from, const Too
     if (model.type == type && model.from == from) models.push_back(&model);
   if (models.empty() || (variation.crown_modes <= 0 && variation.crown_mean <= 0 && type == from)) return;
   const FamilyCrownModel& model = *models[random.index(models.size())];
+  const double factor = families.population.teeth[static_cast<std::size_t>(type)].crown_form_factor;
   // From the template's own crown (0) to the form of the model's mean (1) and a little beyond.
   const double share = std::clamp(model.usual_share + random.normal(0.0, variation.crown_mean), 0.0, 1.15);
   const double shift = share - model.template_share;
   Eigen::VectorXf sum = static_cast<float>(shift) * model.modes.mean_shift;
   Eigen::VectorXf coefficients(model.modes.modes.cols());
   for (Eigen::Index k = 0; k < coefficients.size(); ++k) {
-    const double deviation = variation.crown_modes * model.modes.deviations[static_cast<std::size_t>(k)];
+    const double deviation = factor * variation.crown_modes * model.modes.deviations[static_cast<std::size_t>(k)];
     coefficients[k] = static_cast<float>(random.normal(0.0, deviation, 2.8));
   }
   sum.noalias() += model.modes.modes * coefficients;
@@ -127,11 +128,13 @@ void measure_roots(SyntheticTooth& tooth, std::size_t roots) {
 SyntheticTooth draw_tooth(const ToothFamilies& families, int type, const TemplateLoan& loan,
                           const ToothVariation& variation, const SharedDraws& shared, RandomStream& random) {
   const int from = loan.from;
+  const ToothPopulation& people = families.population.teeth[static_cast<std::size_t>(type)];
   const FamilyTemplate& source = families.templates[static_cast<std::size_t>(from)];
   const ToothDimensions& mean = families.dimensions[static_cast<std::size_t>(type)];
-  const ToothShape shape = draw_shape(source, mean, type, variation, shared, random);
+  const ToothShape shape = draw_shape(source, mean, type, people, variation, shared, random);
   // Small teeth would be bent out of shape by what large ones bear.
-  const double warp = variation.warp_mm * std::clamp((mean.crown_mesiodistal + mean.crown_buccolingual) / 16, 0.7, 1.2);
+  const double warp = people.crown_form_factor * variation.warp_mm *
+                      std::clamp((mean.crown_mesiodistal + mean.crown_buccolingual) / 16, 0.7, 1.2);
   const Waves whole(random, 10, 7.0, 20.0, warp);
   const Waves fine(random, 8, 2.5, 6.0, 0.35 * warp);
   SyntheticTooth tooth;
@@ -149,7 +152,7 @@ SyntheticTooth draw_tooth(const ToothFamilies& families, int type, const Templat
   tooth.crown_turn =
       loan.turn + crown_turn(loan.crown.empty() ? source.mesh.vertices : loan.crown, tooth.mesh.vertices, tooth.crown);
   tooth.crown_axis = Eigen::AngleAxisd(tooth.crown_turn - loan.turn, Eigen::Vector3d::UnitZ()) * loan.crown_axis;
-  mark_crown(tooth, variation, random);
+  mark_crown(tooth, variation, shared.wear, random);
   tooth.junction = shaped_junction(source.junction, shape);
   measure_roots(tooth, source.roots.size());
   if (source.roots.size() > 1) tooth.furcation_z = shape.height(source.furcation_z);
@@ -159,9 +162,10 @@ SyntheticTooth draw_tooth(const ToothFamilies& families, int type, const Templat
 ToothVariation no_variation() {
   ToothVariation none;
   none.crown_modes = none.crown_mean = none.size = none.proportion = none.crown_height = 0;
-  none.root_length_mm = none.trunk = none.warp_mm = none.root_thickness = none.taper = none.lean_degrees = 0;
-  none.distal_bend_mm = none.dilaceration_share = none.divergence_mm = none.fusion = none.junction_curve = 0;
-  none.blunt_share = none.open_apex_share = none.resorption_share = none.deciduous_share = 0;
+  none.root_length = none.trunk = none.warp_mm = none.root_thickness = none.taper = none.lean = 0;
+  none.distal_bend_mm = none.curvature = none.dilaceration = none.divergence_mm = none.fusion = 0;
+  none.junction_curve = none.blunt_share = none.short_roots = none.open_apex_share = none.resorption_share = 0;
+  none.bulbous_share = none.deciduous_share = 0;
   none.wear_mm = none.wear_share = none.decay_share = none.bracket_share = 0;
   return none;
 }

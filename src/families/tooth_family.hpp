@@ -3,6 +3,7 @@
 #pragma once
 
 #include "families/crown_model.hpp"
+#include "families/population.hpp"
 #include "rhizodont/mesh.hpp"
 #include "teeth/fdi.hpp"
 #include "teeth/frame.hpp"
@@ -47,7 +48,8 @@ struct FamilyTemplate {
   Eigen::Vector2d crown_width{1, 1};  ///< extent of the crown along x (mesiodistal) and y (buccolingual), millimetres
 };
 
-/// Mean dimensions of a tooth type, millimetres (anatomy.csv: Wheeler; Ash and Nelson).
+/// Mean dimensions of a tooth type, millimetres: of the crown from anatomy.csv (Wheeler; Ash and Nelson), of the root
+/// from the population.
 struct ToothDimensions {
   double crown_height = 0;
   double root_length = 0;  ///< of the longest root
@@ -85,13 +87,15 @@ struct ToothFamilies {
   std::vector<FamilyCrownModel> crown_models;
   /// Growth axis of each loaded type's mean crown (mean_crown), unit, in the frame of its template, not turned.
   std::array<Eigen::Vector3d, tooth_type_count> crown_axes;
+  Population population;  ///< whose teeth these are
 };
 
 /// Options of load_tooth_families.
 struct FamilyLoadOptions {
-  std::size_t vertices = 5000;   ///< vertices per template after simplification, >= 500
-  std::vector<int> types;        ///< types 0..15 to load; empty: all
-  std::size_t crown_modes = 24;  ///< modes of the statistical crown models, 0..40; 0: do without these models
+  std::size_t vertices = 5000;            ///< vertices per template after simplification, >= 500
+  std::vector<int> types;                 ///< types 0..15 to load; empty: all
+  std::size_t crown_modes = 24;           ///< modes of the statistical crown models, 0..40; 0: do without these models
+  std::filesystem::path population = {};  ///< another table (population.hpp); empty: the middle of published ones
 };
 
 /// Reads folder/templates/tooth_FDI.ply (21-28, 31-38; per-vertex `crown`: 1 enamel, 0 cementum, 255 unlabelled) and
@@ -99,39 +103,42 @@ struct FamilyLoadOptions {
 /// If there is a folder/crowns/ssm with crown_ssm_FDI.safetensors (x1-x7 of all quadrants; see CrownShapeModel), these
 /// are registered to the templates.
 /// Throws InputError if a file is missing or damaged or a template is not a closed surface of genus 0, NoResultError if
-/// a type's mean crown cannot be cut from its template.
+/// a type's mean crown cannot be cut from its template; as load_population for another table.
 ToothFamilies load_tooth_families(const std::filesystem::path& folder, const FamilyLoadOptions& options = {});
 
-/// How generated teeth vary; standard deviations unless said otherwise. 0 switches a variation off.
+/// How generated teeth vary: factors on what the population says of a type (population.hpp), and standard deviations of
+/// what no table has. 0 switches a variation off.
 struct ToothVariation {
-  double crown_modes = 1.1;            ///< factor on the crown models' own deviations
-  double crown_mean = 0.35;            ///< of the way from the template's own crown (-1) to the model's mean (0)
-  double size = 0.06;                  ///< common factor of all crown dimensions, relative
-  double proportion = 0.035;           ///< mesiodistal and buccolingual width each on its own, relative
-  double crown_height = 0.07;          ///< height of the crown on its own, relative
-  double root_length_mm = 1.5;         ///< root length beside what goes with size, millimetres
-  double root_size_correlation = 0.5;  ///< exponent with which the root's length follows the crown's size, 0..1
-  double trunk = 0.25;                 ///< length of the root trunk, relative
-  double warp_mm = 0.27;               ///< smooth displacement of the surface of a tooth 8 mm wide, waves of 7 to 20 mm
-  double root_thickness = 0.09;        ///< the root's cross-section along x and y each, relative
-  double taper = 0.15;                 ///< change of the cross-section from neck to apex, relative
-  double lean_degrees = 4.5;           ///< angle between the root's line and the crown's axis, along x and y each
-  /// Share of the lean of the template's own root that its type has on average, 0..1. One tooth cannot tell what is its
-  /// own and what its type's: templates of neighbouring types lean by 1 to 16 degrees, in either direction.
-  double template_lean = 0.4;
-  double distal_bend_mm = 0.9;       ///< sideways shift of the apex towards distal and buccal, millimetres
-  double dilaceration_share = 0.05;  ///< share of teeth with a sharp turn near the tip, 0..1
-  double divergence_mm = 1.0;        ///< shift of each apex of a multi-rooted tooth away from the others, millimetres
-  double fusion = 1;                 ///< factor on the share of teeth whose roots part late, 0..2
-  double junction_curve = 0.2;       ///< depth of the curves of the cemento-enamel junction, relative
-  double blunt_share = 0.4;          ///< share of root tips that are rounded off, by up to 0.7 mm, 0..1
-  double open_apex_share = 0.03;     ///< share of immature teeth: short and wide open at the tip, 0..1
-  double resorption_share = 0.04;    ///< share of teeth with shortened, blunt roots, 0..1
-  double deciduous_share = 0.02;     ///< share of small squat crowns on slender, flaring roots, 0..1
-  double wear_mm = 3.0;              ///< largest loss of cusp height in a worn tooth; most lose little, millimetres
-  double wear_share = 0.5;           ///< share of worn teeth, 0..1
-  double decay_share = 0.05;         ///< share of crowns with a cavity or chip, 0..1
-  double bracket_share = 0.05;       ///< share of crowns with a bracket or attachment, 0..1
+  double crown_modes = 1.1;    ///< factor on the crown models' own deviations
+  double crown_mean = 0.35;    ///< of the way from the template's own crown (-1) to the model's mean (0)
+  double size = 1;             ///< factor on the deviation of the crown's size
+  double proportion = 1;       ///< factor on the deviation of either width
+  double crown_height = 0.07;  ///< height of the crown on its own, relative
+  double root_length = 1;      ///< factor on the deviation of root lengths beside what goes with size
+  double trunk = 1;            ///< factor on the deviation of the root trunk
+  double warp_mm = 0.27;       ///< smooth displacement of the surface of a tooth 8 mm wide, waves of 7 to 20 mm
+  double root_thickness = 1;   ///< factor on the deviation of the root's widths
+  double taper = 0.15;         ///< change of the cross-section from neck to apex, relative
+  double lean = 1;             ///< factor on the angle between the root's line and the crown's axis
+  double template_lean = 0.4;  ///< share of the lean of the template's own root that its type has on average, 0..1. One
+                               ///< tooth cannot tell what is its own and what its type's: templates of neighbouring
+                               ///< types lean by 1 to 16 degrees, in either direction
+  double distal_bend_mm = 0.6;      ///< sweep of the whole root towards distal and buccal, millimetres at the apex
+  double curvature = 1;             ///< factor on the angles of curved roots
+  double dilaceration = 1;          ///< factor on the share of teeth with a sharp turn near the tip, 0..3
+  double divergence_mm = 1.0;       ///< shift of each apex of a multi-rooted tooth away from the others, millimetres
+  double fusion = 1;                ///< factor on the share of teeth whose roots part late, 0..2
+  double junction_curve = 0.2;      ///< depth of the curves of the cemento-enamel junction, relative
+  double blunt_share = 0.4;         ///< share of root tips that are rounded off, by up to 0.7 mm, 0..1
+  double short_roots = 1;           ///< factor on the share of teeth with short, blunt roots from birth, 0..10
+  double open_apex_share = 0.03;    ///< share of immature teeth: short and wide open at the tip, 0..1
+  double resorption_share = 0.022;  ///< share of teeth with shortened, blunt roots, 0..1
+  double bulbous_share = 0.02;      ///< share of roots that swell towards the tip, 0..1
+  double deciduous_share = 0.02;    ///< share of small squat crowns on slender, flaring roots, 0..1
+  double wear_mm = 3.0;             ///< loss of cusp height of much worn teeth; most lose little, millimetres
+  double wear_share = 0.5;          ///< share of worn teeth, 0..1; one in twelve of them is worn down by up to half
+  double decay_share = 0.05;        ///< share of crowns with a cavity or chip, 0..1
+  double bracket_share = 0.05;      ///< share of crowns with a bracket or attachment, 0..1
 };
 
 /// A generated whole tooth, millimetres, in the frame of FamilyTemplate, and what is known about it.
@@ -157,6 +164,7 @@ struct SharedDraws {
   std::optional<double> size;            ///< of the crown, beside the type's mean
   std::optional<double> root_length;     ///< beside what goes with size
   std::optional<double> root_thickness;  ///< half of the variance of the root's widths along x and y
+  std::optional<double> wear;            ///< rank among teeth by wear: the most worn are those above some number
 };
 
 /// Draws tooth number `seed` of a type (0..15). Depends on the arguments alone. A draw that folds, turns over or lets

@@ -3,16 +3,21 @@
 
 // A chain of maps each of which is one-to-one: stretching along the axis (crown, trunk and roots each by its own
 // factor), scaling across, tapering around each root's centreline, shearing (lean, bends), and gentle waves.
-// Mean dimensions: Wheeler; Ash and Nelson, "Wheeler's Dental Anatomy".
+// Mean dimensions of crowns: Wheeler; Ash and Nelson, "Wheeler's Dental Anatomy". Roots: populations/middle.json, which
+// names its sources. Angles of curved roots are those of S. W. Schneider, "A comparison of canal preparations in
+// straight and curved root canals", 1971: of the chord from where the curve begins to the tip.
 #include "families/tooth_shape.hpp"
 
 #include "mesh/smooth_functions.hpp"
 #include "teeth/fdi.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace rhizodont {
 namespace {
@@ -21,22 +26,6 @@ Eigen::Vector3d unit(RandomStream& random) {
   const double x = random.normal(), y = random.normal(), z = random.normal();
   return Eigen::Vector3d(x, y, z) / std::max(1e-9, std::sqrt(x * x + y * y + z * z));
 }
-
-// How often the roots of a multi-rooted type hang together for most of their length, as a share of its teeth: upper
-// 1..8, lower 1..8. Round figures between those of Asian and European studies; single-rooted types have no use for
-// them.
-constexpr std::array<double, tooth_type_count> fused_share{0, 0, 0, 0.15, 0, 0.06, 0.22, 0.45,
-                                                           0, 0, 0, 0,    0, 0.05, 0.20, 0.40};
-
-// Millimetres from the cemento-enamel junction amid the cheek's side to where the roots part, on average; 0: where the
-// template's do. One template says little of it: that of 36 parts at 5.1 mm. Lower first molars: entrances at 3.07
-// (cheek) and 3.54 mm (tongue) in 96 teeth ("Biometric study of the prefurcation area of human mandibular first
-// molars"), at 2.49 and 3.18 mm in 30 (Odontology 2021, doi 10.1007/s10266-021-00645-w), roots apart at 4.0 mm in 20
-// ("Root surface measurements of the mandibular first molar"). Upper first molars: the first root apart at 5.0 mm in 20
-// ("Linear variation of the root surface area of the maxillary first molar"). Second molars' trunks are longer than
-// first ones' (Mabrouk et al., International Journal of Dentistry 2020, 8846273); by how much here, and third molars,
-// are round figures.
-constexpr std::array<double, tooth_type_count> trunk_mm{0, 0, 0, 0, 0, 5.0, 5.3, 5.3, 0, 0, 0, 0, 0, 3.4, 3.7, 3.7};
 
 // Slope of the lowest part of the height map that gives the wanted root length.
 void fit_root_length(HeightMap& map, double template_length, double wanted) {
@@ -47,29 +36,64 @@ void fit_root_length(HeightMap& map, double template_length, double wanted) {
   }
 }
 
+// Of how the length of a single root's neck is stretched against its rest, relative (ours).
+constexpr double neck_deviation = 0.25;
+
 // Where the roots part, as a share of the root's length, and whether they count as fused.
 struct Branching {
   double share = 0.3;
   bool fused = false;
 };
 
-/// `below`: how far the junction's middle on the cheek's side lies below its mean height, millimetres.
-Branching draw_branching(const FamilyTemplate& source, const ToothDimensions& mean, int type, double below,
-                         const ToothVariation& variation, RandomStream& random) {
-  const double published = trunk_mm[static_cast<std::size_t>(type)];
-  const double own = published > 0 ? (published + below) / (mean.root_length + below)
-                                   : std::max(1.0, -source.furcation_z) / source.root_length;
-  if (random.chance(variation.fusion * fused_share[static_cast<std::size_t>(type)]))
-    return {random.uniform(0.62, 0.86), true};
+/// `length`: of the root from the junction's mean height; `below`: how far the junction's middle on the cheek's side
+/// lies below that, millimetres.
+Branching draw_branching(const FamilyTemplate& source, const ToothPopulation& people, int type, double length,
+                         double below, const ToothVariation& variation, RandomStream& random) {
+  if (random.chance(variation.fusion * people.fused_share)) return {random.uniform(0.62, 0.86), true};
   // Two-rooted upper premolars part anywhere from the neck's third to the tips.
-  if (type == 3 && variation.fusion > 0) return {random.uniform(0.3, 0.72), false};
-  return {std::clamp(own * random.normal(1.0, variation.trunk), 0.12, 0.6), false};
+  if (source.roots.size() == 2 && (type == 3 || type == 4) && variation.fusion > 0)
+    return {random.uniform(0.3, 0.72), false};
+  const double usual = people.trunk_mm > 0
+                           ? people.trunk_mm + below
+                           : std::max(1.0, -source.furcation_z) * (people.root_length_mm + below) / source.root_length;
+  // Long trunks go with short roots (Hou, Tsai 1997); by how much is ours.
+  constexpr double per_mm = 0.1;
+  const double trunk = usual + random.normal(0.0, variation.trunk * people.trunk_deviation_mm) -
+                       (variation.trunk > 0 ? per_mm * (length - below - people.root_length_mm) : 0.0);
+  return {std::clamp(trunk / length, 0.12, 0.6), false};
+}
+
+// Shift of the tip of a root, in the directions of the tooth, that gives the chord from the curve's beginning to the
+// tip the angle drawn. `usual`: unit, where such roots mostly curve to.
+Eigen::Vector2d draw_curve(const ToothPopulation& people, const Eigen::Vector2d& usual, double length, double power,
+                           const ToothVariation& variation, RandomStream& random) {
+  const bool is_curved = random.chance(people.curved_share), is_usual = random.chance(people.curve_usual_share);
+  const double angle = std::abs(random.normal(people.curve_degrees, people.curve_deviation_degrees));
+  const double anywhere = random.uniform(0, 2 * std::numbers::pi), aside = random.normal(0.0, 0.35);
+  if (!is_curved) return Eigen::Vector2d::Zero();
+  // The curve begins where it has made a twentieth of its way.
+  constexpr double begun = 0.05;
+  const double run = length * (1 - std::pow(begun, 1 / power));
+  const double size = std::tan(variation.curvature * angle * std::numbers::pi / 180) * run / (1 - begun);
+  const Eigen::Vector2d direction = is_usual ? Eigen::Vector2d(Eigen::Rotation2Dd(aside) * usual)
+                                             : Eigen::Vector2d(std::cos(anywhere), std::sin(anywhere));
+  return size * direction;
+}
+
+// Where the parted root mostly curves to: roots towards the tooth's middle, mesiodistally where they stand side by
+// side.
+Eigen::Vector2d usual_curve(const Eigen::Vector2d& outward, std::size_t roots, double distal) {
+  const bool is_beside = std::abs(outward.x()) > 0.35 * outward.norm();
+  if (is_beside) return {outward.x() > 0 ? -1.0 : 1.0, 0};
+  return roots == 2 ? Eigen::Vector2d(distal, 0) : Eigen::Vector2d(0, outward.y() > 0 ? -1.0 : 1.0);
 }
 
 RootShape draw_root(const FamilyTemplate& source, const TemplateRoot& root, const Eigen::Vector2d& centre,
-                    double spread, bool fused, const ToothVariation& variation, RandomStream& random) {
+                    double spread, bool fused, double parted_length, double distal, const ToothPopulation& people,
+                    const ToothVariation& variation, RandomStream& random) {
   RootShape drawn;
   if (source.roots.size() > 1) {
+    drawn.curve_power = random.uniform(2.2, 4.0);
     const Eigen::Vector2d outward = source.mesh.vertices[root.apex].head<2>() - centre;
     const double own = random.normal(0.0, 0.5 * variation.divergence_mm);
     const Eigen::Vector2d aside =
@@ -77,33 +101,41 @@ RootShape draw_root(const FamilyTemplate& source, const TemplateRoot& root, cons
     drawn.shift = (spread + own) * outward.normalized() + aside;
     if (fused) drawn.shift = 0.3 * drawn.shift - random.uniform(0.0, 0.45) * outward;
     drawn.stretch = random.normal(0.0, 0.07) * std::min(1.0, variation.divergence_mm);
+    const Eigen::Vector2d curve = draw_curve(people, usual_curve(outward, source.roots.size(), distal), parted_length,
+                                             drawn.curve_power, variation, random);
+    drawn.curve = fused ? 0.4 * curve : curve;
   }
   drawn.shift_power = random.uniform(1.2, 2.5);
   drawn.taper = random.normal(0.0, 0.7 * variation.taper);
-  drawn.cross_section = random.normal(0.0, 0.8 * variation.root_thickness);
+  drawn.cross_section = random.normal(0.0, 0.8 * variation.root_thickness * people.root_thickness_deviation);
   if (random.chance(variation.blunt_share)) drawn.blunt = random.uniform(0.0, 0.7);
   return drawn;
 }
 
-void draw_bends(ToothShape& shape, int type, double length, const ToothVariation& variation, RandomStream& random) {
-  const double distal = type < 8 ? 1 : -1;  // direction of x
-  const double lean = length * std::tan(variation.lean_degrees * std::numbers::pi / 180);
-  shape.lean = {random.normal(0.0, lean), random.normal(0.0, lean)};
+void draw_bends(const FamilyTemplate& source, ToothShape& shape, double distal, double length,
+                const ToothPopulation& people, const ToothVariation& variation, RandomStream& random) {
+  const auto lean = [&](double degrees) {
+    return length * std::tan(random.normal(0.0, variation.lean * degrees) * std::numbers::pi / 180);
+  };
+  shape.lean.x() = lean(people.lean_mesiodistal_degrees);
+  shape.lean.y() = lean(people.lean_buccolingual_degrees);
   const double bend = variation.distal_bend_mm;
   shape.bend = {random.normal(distal * 0.4, 1.0) * bend, random.normal(0.0, 0.8) * bend};
   shape.bend_power = random.uniform(1.3, 3.0);
-  if (random.chance(variation.dilaceration_share)) {
+  if (random.chance(variation.dilaceration * people.dilaceration_share)) {
     // A sharp turn of the last quarter to third, mostly to distal.
     const double angle = random.uniform(0, 2 * std::numbers::pi), size = random.uniform(1.0, 2.4);
     shape.tip_bend = size * Eigen::Vector2d(0.9 * distal + 0.6 * std::cos(angle), 0.6 * std::sin(angle));
     shape.tip_power = random.uniform(5.0, 8.0);
-  } else if (random.chance(0.3)) {
-    shape.tip_bend = Eigen::Vector2d(random.normal(distal * 0.8, 0.8), random.normal(0.0, 0.6)) * bend;
+  } else if (source.roots.size() == 1) {
+    shape.tip_power = random.uniform(2.5, 6.0);
+    shape.tip_bend = draw_curve(people, {distal, 0}, length, shape.tip_power, variation, random);
   }
 }
 
-// Immature and resorbed roots: short, and blunt in their different ways.
-void shorten(ToothShape& shape, double& length, const ToothVariation& variation, RandomStream& random) {
+// Immature, resorbed and short roots, blunt in their different ways, and roots that swell.
+void deform_root(ToothShape& shape, double& length, const ToothPopulation& people, const ToothVariation& variation,
+                 RandomStream& random) {
   if (random.chance(variation.open_apex_share)) {
     length *= random.uniform(0.55, 0.9);
     shape.taper += random.uniform(0.1, 0.35);
@@ -111,6 +143,11 @@ void shorten(ToothShape& shape, double& length, const ToothVariation& variation,
   } else if (random.chance(variation.resorption_share)) {
     length *= random.uniform(0.68, 0.92);
     for (RootShape& root : shape.roots) root.blunt = random.uniform(0.4, 1.6);
+  } else if (random.chance(variation.short_roots * people.short_root_share)) {
+    length *= random.uniform(0.55, 0.75);
+    for (RootShape& root : shape.roots) root.blunt = random.uniform(0.6, 1.4);
+  } else if (random.chance(variation.bulbous_share)) {
+    for (RootShape& root : shape.roots) root.swelling = random.uniform(0.2, 0.6);
   }
 }
 
@@ -132,25 +169,36 @@ double HeightMap::operator()(double h) const {
 }
 
 ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean, int type,
-                      const ToothVariation& variation, const SharedDraws& shared, RandomStream& random) {
-  // Against the table: scanned crowns (means of the statistical crown models of about 95 people) are a little larger,
-  // roots of living populations a little shorter.
-  constexpr double crown_population = 1.02, root_population = 0.98;
+                      const ToothPopulation& people, const ToothVariation& variation, const SharedDraws& shared,
+                      RandomStream& random) {
+  constexpr double furthest = 2.8;          // deviations
+  const double distal = type < 8 ? 1 : -1;  // direction of x
   ToothShape shape;
-  const double own_size = random.normal(1.0, variation.size, 2.8);
-  const double size = shared.size ? 1 + variation.size * std::clamp(*shared.size, -2.8, 2.8) : own_size;
-  const auto proportion = [&] { return random.normal(1.0, variation.proportion); };
-  shape.scale.x() = crown_population * size * proportion() * mean.crown_mesiodistal / source.crown_width.x();
-  shape.scale.y() = crown_population * size * proportion() * mean.crown_buccolingual / source.crown_width.y();
-  // The table measures from the junction amid the buccal side, which lies below the junction's mean height.
+  const auto drawn = [&](const std::optional<double>& given) {
+    const double own = random.normal(0.0, 1.0, furthest);
+    return given ? std::clamp(*given, -furthest, furthest) : own;
+  };
+  const double size = 1 + variation.size * people.crown_size_deviation * drawn(shared.size);
+  const auto proportion = [&] {
+    return people.crown_size * size * random.normal(1.0, variation.proportion * people.crown_proportion_deviation);
+  };
+  shape.scale.x() = proportion() * mean.crown_mesiodistal / source.crown_width.x();
+  shape.scale.y() = proportion() * mean.crown_buccolingual / source.crown_width.y();
+  // Tables measure from the junction amid the buccal side, which lies below the junction's mean height.
   const double buccal = -source.junction(0, source.junction.half_width.y());
   const double crown_height = size * random.normal(1.0, variation.crown_height) * mean.crown_height;
   shape.scale.z() = crown_height / (source.crown_height + buccal);
   shape.junction_scale = random.normal(1.0, variation.junction_curve) * shape.scale.z();
   const double below = buccal * shape.junction_scale;
 
+  const double with_size = people.root_follows_crown * people.crown_size_deviation * mean.root_length;
+  const double own_deviation =
+      std::sqrt(std::max(0.0, std::pow(people.root_length_deviation_mm, 2) - with_size * with_size));
+  double length = mean.root_length * std::pow(size, people.root_follows_crown) + below +
+                  variation.root_length * own_deviation * drawn(shared.root_length);
+  length = std::max(length, 0.55 * mean.root_length);
   const Branching branching =
-      source.roots.size() > 1 ? draw_branching(source, mean, type, below, variation, random) : Branching{};
+      source.roots.size() > 1 ? draw_branching(source, people, type, length, below, variation, random) : Branching{};
   Eigen::Vector2d centre = Eigen::Vector2d::Zero();
   for (const TemplateRoot& root : source.roots)
     centre += source.mesh.vertices[root.apex].head<2>() / static_cast<double>(source.roots.size());
@@ -158,20 +206,17 @@ ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean,
   shape.taper = random.normal(0.0, variation.taper);
   const bool deciduous = random.chance(variation.deciduous_share);
   if (deciduous) spread += random.uniform(0.5, 2.0);
+  const double parted_length = (1 - branching.share) * length / shape.scale.head<2>().mean();
   for (const TemplateRoot& root : source.roots)
-    shape.roots.push_back(draw_root(source, root, centre, spread, branching.fused, variation, random));
-
-  double length = root_population * mean.root_length * std::pow(size, variation.root_size_correlation) + below;
-  const double own_length = random.normal(0.0, variation.root_length_mm);
-  length += shared.root_length ? variation.root_length_mm * std::clamp(*shared.root_length, -2.8, 2.8) : own_length;
+    shape.roots.push_back(
+        draw_root(source, root, centre, spread, branching.fused, parted_length, distal, people, variation, random));
   if (deciduous) {  // squat crowns, slender short roots
     const double small = random.uniform(0.68, 0.9);
     shape.scale = shape.scale.cwiseProduct(Eigen::Vector3d(small, small, small * random.uniform(0.75, 0.9)));
     length *= random.uniform(0.6, 0.95);
     shape.taper -= 0.15;
   }
-  length = std::max(length, 0.55 * mean.root_length);
-  shorten(shape, length, variation, random);
+  deform_root(shape, length, people, variation, random);
 
   shape.height.crown = shape.scale.z();
   if (source.roots.size() > 1) {
@@ -179,15 +224,15 @@ ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean,
     shape.height.trunk = branching.share * length / shape.height.trunk_depth;
   } else {
     shape.height.trunk_depth = 3.0;
-    shape.height.trunk = shape.scale.z() * random.normal(1.0, variation.trunk);
+    shape.height.trunk = shape.scale.z() * random.normal(1.0, variation.trunk * neck_deviation);
   }
   fit_root_length(shape.height, source.root_length, length);
-  shape.root_section = {random.normal(1.0, variation.root_thickness), random.normal(1.0, variation.root_thickness)};
+  const double thickness = variation.root_thickness * people.root_thickness_deviation;
+  shape.root_section = {random.normal(1.0, thickness), random.normal(1.0, thickness)};
   if (shared.root_thickness)
     for (double& width : shape.root_section)
-      width =
-          1 + std::sqrt(0.5) * (width - 1 + variation.root_thickness * std::clamp(*shared.root_thickness, -2.3, 2.3));
-  draw_bends(shape, type, length, variation, random);
+      width = 1 + std::sqrt(0.5) * (width - 1 + thickness * std::clamp(*shared.root_thickness, -2.3, 2.3));
+  draw_bends(source, shape, distal, length, people, variation, random);
   shape.lean -= (1 - variation.template_lean) * centre.cwiseProduct(shape.scale.head<2>());
   return shape;
 }
@@ -205,9 +250,10 @@ Point shaped(const FamilyTemplate& source, const ToothShape& shape, const Point&
     const double depth = std::max(0.0, line.branch_z - z), u = depth / length;
     const Eigen::Vector2d centre = centre_at(line, z);
     const double ease = smooth_step(depth / 2.5);
-    const Eigen::Vector2d factor(1 + ease * (drawn.taper * u + drawn.cross_section),
-                                 1 + ease * (drawn.taper * u - drawn.cross_section));
-    xy = centre + (xy - centre).cwiseProduct(factor) + std::pow(u, drawn.shift_power) * drawn.shift;
+    const double wider = drawn.taper * u + drawn.swelling * smooth_step(2 * u - 0.8);
+    const Eigen::Vector2d factor(1 + ease * (wider + drawn.cross_section), 1 + ease * (wider - drawn.cross_section));
+    xy = centre + (xy - centre).cwiseProduct(factor) + std::pow(u, drawn.shift_power) * drawn.shift +
+         std::pow(u, drawn.curve_power) * drawn.curve;
     z = line.branch_z - depth - drawn.stretch * depth * depth / length;
     if (drawn.blunt > 0 && depth > 0) {
       const double below = bottom + drawn.blunt - z;

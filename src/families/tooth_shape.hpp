@@ -21,7 +21,10 @@ struct HeightMap {
 struct RootShape {
   Eigen::Vector2d shift = Eigen::Vector2d::Zero();  ///< of the apex against the trunk, millimetres
   double shift_power = 2;
+  Eigen::Vector2d curve = Eigen::Vector2d::Zero();  ///< of the tip, beside the shift, millimetres
+  double curve_power = 3;
   double taper = 0, stretch = 0;
+  double swelling = 0;       ///< of the lower half, relative
   double cross_section = 0;  ///< relative, along x against y
   double blunt = 0;          ///< millimetres taken off the tip, softly
 };
@@ -41,7 +44,8 @@ struct ToothShape {
 
 /// Draws a shape of a type on a template. Depends on the arguments alone.
 ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean, int type,
-                      const ToothVariation& variation, const SharedDraws& shared, RandomStream& random);
+                      const ToothPopulation& people, const ToothVariation& variation, const SharedDraws& shared,
+                      RandomStream& random);
 
 /// Position of a template vertex, which may have been moved by a crown model, in the drawn shape.
 /// @param root  root that the vertex belongs to below its branching, else -1

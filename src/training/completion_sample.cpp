@@ -33,7 +33,21 @@ void require_in_range(const CompletionSampleOptions& options) {
                   {"skirt_mm", options.skirt_mm, OptionRange::at_least(0)},
                   {"lost_turn_share", options.lost_turn_share, share_range},
                   {"rotation_jitter_radians", options.rotation_jitter_radians, OptionRange::at_least(0)},
-                  {"form_axis_error_degrees", options.form_axis_error_degrees, OptionRange::at_least(0)}});
+                  {"form_axis_error_degrees", options.form_axis_error_degrees, OptionRange::at_least(0)},
+                  {"arch_axis_share", options.arch_axis_share, share_range},
+                  {"arch_axis_error_degrees", options.arch_axis_error_degrees, OptionRange::at_least(0)}});
+}
+
+constexpr double degree = std::numbers::pi / 180;
+
+// The axis that a crown gets at inference: that of its border, or between that and where the arch says up is.
+Eigen::Vector3d draw_axis(const SyntheticTooth& tooth, const TriangleMesh& crown,
+                          const CompletionSampleOptions& options, RandomStream& random) {
+  const Eigen::Vector3d of_border = growth_axis(crown);
+  const bool in_arch = random.chance(options.arch_axis_share);
+  const double error = options.arch_axis_error_degrees * degree;
+  const double x = random.normal(0.0, error), y = random.normal(0.0, error);
+  return in_arch ? axis_in_arch(of_border, (tooth.crown_axis + Eigen::Vector3d(x, y, 0)).normalized()) : of_border;
 }
 
 struct SurfacePoint {
@@ -82,7 +96,8 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
   if (random.chance(options.skirt_probability)) add_skirt_remains(crop.mesh, options.skirt_mm, random);
   const bool lost = random.chance(options.lost_turn_share);
   const double jitter = lost ? std::numbers::pi : options.rotation_jitter_radians;
-  sample.frame = frame_of_crop(crop.mesh, random.uniform(-jitter, jitter) - tooth.crown_turn);
+  const double turn = random.uniform(-jitter, jitter) - tooth.crown_turn;
+  sample.frame = frame_of_crop(crop.mesh, draw_axis(tooth, crop.mesh, options, random), turn);
 
   CompletionTrainingSample& pair = sample.pair;
   pair.input.reserve(options.input_points);
@@ -127,11 +142,14 @@ CompletionSample make_completion_sample(const ToothFamilies& families, std::uint
   for (const Eigen::Vector3d& axis : tooth.root_axes)
     sample.root_axes.push_back(sample.frame.direction_to_canonical(axis));
   sample.growth_axis = sample.frame.direction_to_canonical(tooth.growth_axis);
-  const double error = options.form_axis_error_degrees * std::numbers::pi / 180 * (lost ? 3 : 1);
+  const double error = options.form_axis_error_degrees * degree * (lost ? 3 : 1);
   const double error_x = random.normal(0, error), error_y = random.normal(0, error);
-  const Eigen::Vector2d form_axis =
+  Eigen::Vector2d form_axis =
       sample.frame.direction_to_canonical(tooth.crown_axis).head<2>() + Eigen::Vector2d(error_x, error_y);
-  pair.form_axis = form_axis.cast<float>();
+  constexpr double longest = 0.5;  // as the registration has it
+  form_axis *= longest / std::max(longest, form_axis.norm());
+  const bool is_unknown = lost && random.chance(0.5);
+  pair.form_axis = is_unknown ? Eigen::Vector2f::Zero() : Eigen::Vector2f(form_axis.cast<float>());
   sample.junction = tooth.junction;
   sample.gum_line = crop.line;
   sample.furcation_z = tooth.furcation_z;

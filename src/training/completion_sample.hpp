@@ -29,7 +29,11 @@ struct CompletionSampleOptions {
   double rotation_jitter_radians = 0.15;  ///< half width of the error of the rotation about the growth axis, >= 0;
                                           ///< beside crowns that are turned anyhow
   double form_axis_error_degrees = 4.0;   ///< standard deviation of the error of `form_axis` along x and y, >= 0, as
-                                          ///< bench_families finds it; three times as much where the turn is lost
+                                          ///< bench_families finds it; three times as much where the turn is lost,
+                                          ///< and none is known of half of those
+  double arch_axis_share = 0.25;          ///< share of crowns that stand as in an arch (axis_in_arch), 0..1
+  double arch_axis_error_degrees = 6.0;   ///< standard deviation of how the arch's occlusal direction leans against the
+                                          ///< crown's form along x and y there, >= 0
 };
 
 /// A training pair and what is known of its tooth beside it. All coordinates are canonical: growth axis +z (root to

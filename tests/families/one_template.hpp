@@ -63,8 +63,9 @@ class OneTemplate : public ::testing::Test {
             << ",mesial 13 distal " << root_length << ',' << mesiodistal << ",9," << buccolingual << ",9\n";
   }
 
-  ToothFamilies load() const {
+  ToothFamilies load(const std::filesystem::path& population = {}) const {
     FamilyLoadOptions options;
+    options.population = population;
     options.types = {molar};
     options.vertices = 1200;
     return load_tooth_families(folder.path(), options);

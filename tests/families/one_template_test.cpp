@@ -25,7 +25,7 @@
 namespace rhizodont {
 namespace {
 
-using test::crown_height, test::root_length, test::mesiodistal, test::buccolingual;
+using test::crown_height, test::mesiodistal, test::buccolingual;
 using test::molar, test::own_template, test::OneTemplate;
 
 TEST_F(OneTemplate, IsFoundToHaveTwoRootsAndAnUprightAxis) {
@@ -48,13 +48,26 @@ TEST_F(OneTemplate, IsFoundToHaveTwoRootsAndAnUprightAxis) {
   EXPECT_TRUE(families.loans.empty()) << "no neighbour was loaded";
 }
 
-TEST_F(OneTemplate, TheTableIsReadByItsColumns) {
-  for (const ToothDimensions& d : load().dimensions) {
+TEST_F(OneTemplate, CrownsAreOfTheTableAndRootsOfThePopulation) {
+  const ToothFamilies families = load();
+  for (std::size_t type = 0; type < families.dimensions.size(); ++type) {
+    const ToothDimensions& d = families.dimensions[type];
     EXPECT_EQ(d.crown_height, crown_height);
-    EXPECT_EQ(d.root_length, root_length) << "of the longest root";
+    EXPECT_EQ(d.root_length, default_population().teeth[type].root_length_mm);
     EXPECT_EQ(d.crown_mesiodistal, mesiodistal);
     EXPECT_EQ(d.crown_buccolingual, buccolingual);
   }
+}
+
+TEST_F(OneTemplate, AnotherPopulationHasItsOwnRoots) {
+  const std::filesystem::path table = folder.path() / "people.json";
+  std::ofstream(table) << R"({"format": "rhizodont population 1", "name": "long roots",
+                             "teeth": {"36": {"root_length_mm": 18.5}}})";
+  const ToothFamilies families = load(table);
+  EXPECT_EQ(families.population.name, "long roots");
+  EXPECT_EQ(families.dimensions[molar].root_length, 18.5);
+  EXPECT_EQ(families.dimensions[molar + 1].root_length, default_population().teeth[molar + 1].root_length_mm);
+  EXPECT_NEAR(mean_tooth(families, molar).root_length, 18.5, 0.05 * 18.5);
 }
 
 TEST_F(OneTemplate, TheMeanToothHasTheMeanDimensions) {
@@ -63,6 +76,7 @@ TEST_F(OneTemplate, TheMeanToothHasTheMeanDimensions) {
   for (std::size_t v = 0; v < tooth.crown.size(); ++v)
     if (tooth.crown[v] == 1) enamel.extend(tooth.mesh.vertices[v]);
   EXPECT_NEAR(tooth.crown_height, crown_height, 0.05 * crown_height);
+  const double root_length = default_population().teeth[molar].root_length_mm;
   EXPECT_NEAR(tooth.root_length, root_length, 0.05 * root_length);
   EXPECT_NEAR(enamel.sizes().x(), mesiodistal, 0.05 * mesiodistal);
   EXPECT_NEAR(enamel.sizes().y(), buccolingual, 0.05 * buccolingual);
