@@ -10,9 +10,13 @@
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 namespace rhizodont {
 namespace {
@@ -54,6 +58,20 @@ double immature_share(const PersonDraw& person, const PersonVariation& persons, 
 /// Streams of one person's seed; a person's own is 0, and those of the types follow.
 constexpr std::uint64_t person_stream = 0x70e50, tooth_stream = 0x70e51;
 
+SharedDraws draws_of(int fdi, const PersonDraw& person, const PersonVariation& persons) {
+  const auto pair = static_cast<std::size_t>(tooth_type_of_fdi(fdi));
+  RandomStream own(person.seed, tooth_stream + static_cast<std::uint64_t>(fdi));
+  SharedDraws shared;
+  shared.size = mixed(persons.size, person.size, person.pair_size[pair], own.normal());
+  shared.root_length = mixed(persons.root_length, person.root_length, person.pair_root_length[pair], own.normal());
+  shared.root_thickness =
+      mixed(persons.root_thickness, person.root_thickness, person.pair_root_thickness[pair], own.normal());
+  const double of_age = std::sqrt(persons.age_of_wear) * normal_of_rank(person.age_rank) +
+                        std::sqrt(1 - persons.age_of_wear) * person.wear;
+  shared.wear = mixed(persons.wear, of_age, person.pair_wear[pair], own.normal());
+  return shared;
+}
+
 }  // namespace
 
 PersonDraw draw_person(std::uint64_t seed) {
@@ -78,19 +96,15 @@ SyntheticTooth generate_tooth_of_person(const ToothFamilies& families, int fdi, 
                                         const ToothVariation& variation, const PersonVariation& persons) {
   require_in_range(persons);
   const int type = tooth_type_of_fdi(fdi);
-  const auto pair = static_cast<std::size_t>(type);
-  RandomStream own(person.seed, tooth_stream + static_cast<std::uint64_t>(fdi));
-  SharedDraws shared;
-  shared.size = mixed(persons.size, person.size, person.pair_size[pair], own.normal());
-  shared.root_length = mixed(persons.root_length, person.root_length, person.pair_root_length[pair], own.normal());
-  shared.root_thickness =
-      mixed(persons.root_thickness, person.root_thickness, person.pair_root_thickness[pair], own.normal());
-  const double of_age = std::sqrt(persons.age_of_wear) * normal_of_rank(person.age_rank) +
-                        std::sqrt(1 - persons.age_of_wear) * person.wear;
-  shared.wear = mixed(persons.wear, of_age, person.pair_wear[pair], own.normal());
   ToothVariation of_person = variation;
   of_person.open_apex_share = immature_share(person, persons, type, variation.open_apex_share);
-  return generate_tooth(families, type, person.seed, of_person, shared);
+  const SharedDraws shared = draws_of(fdi, person, persons),
+                    of_fellow = draws_of(fdi_of_type(type, !is_right_side(fdi)), person, persons);
+  for (int draw = 0; draw < most_tooth_draws; ++draw) {
+    auto tooth = draw_tooth(families, type, person.seed, draw, of_person, shared);
+    if (tooth && draw_tooth(families, type, person.seed, draw, of_person, of_fellow)) return std::move(*tooth);
+  }
+  throw NoResultError(fmt::format("No sound tooth {} and fellow came out of {} draws.", fdi, most_tooth_draws));
 }
 
 }  // namespace rhizodont

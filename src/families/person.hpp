@@ -41,7 +41,8 @@ PersonDraw draw_person(std::uint64_t seed);
 
 /// A permanent tooth (FDI number) of a person, in the frame of FamilyTemplate, right teeth as their left fellows: of
 /// the same form, template and marks as the tooth on the other side, but for what is its own of size, length and
-/// thickness and wear. Immature are only the young. Throws as generate_tooth, and UsageError for shares out of range.
+/// thickness and wear: a draw that is rejected on one side is on both. Immature are only the young. Throws as
+/// generate_tooth, and UsageError for shares out of range.
 SyntheticTooth generate_tooth_of_person(const ToothFamilies& families, int fdi, const PersonDraw& person,
                                         const ToothVariation& variation = {}, const PersonVariation& persons = {});
 

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace rhizodont {
 namespace {
@@ -125,7 +126,7 @@ void measure_roots(SyntheticTooth& tooth, std::size_t roots) {
   tooth.root_length = -box.min().z();
 }
 
-SyntheticTooth draw_tooth(const ToothFamilies& families, int type, const TemplateLoan& loan,
+SyntheticTooth grow_tooth(const ToothFamilies& families, int type, const TemplateLoan& loan,
                           const ToothVariation& variation, const SharedDraws& shared, RandomStream& random) {
   const int from = loan.from;
   const ToothPopulation& people = families.population.teeth[static_cast<std::size_t>(type)];
@@ -178,17 +179,22 @@ void require_type(const ToothFamilies& families, int type) {
 
 }  // namespace
 
+std::optional<SyntheticTooth> draw_tooth(const ToothFamilies& families, int type, std::uint64_t seed, int draw,
+                                         const ToothVariation& variation, const SharedDraws& shared) {
+  require_type(families, type);
+  // Each draw has a stream of its own, so that teeth that differ in what they share with others do so in nothing else.
+  RandomStream random(seed, (static_cast<std::uint64_t>(draw) << 32) + static_cast<std::uint64_t>(type) + 1);
+  const TemplateLoan own = own_template(families, type);
+  const TemplateLoan& loan = choose_template(type, random, families, own);
+  SyntheticTooth tooth = grow_tooth(families, type, loan, variation, shared, random);
+  if (!is_sound(families.templates[static_cast<std::size_t>(loan.from)], tooth)) return std::nullopt;
+  return tooth;
+}
+
 SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint64_t seed,
                               const ToothVariation& variation, const SharedDraws& shared) {
-  require_type(families, type);
-  RandomStream random(seed, static_cast<std::uint64_t>(type) + 1);
-  const TemplateLoan own = own_template(families, type);
-  for (int draw = 0; draw < 20; ++draw) {
-    const TemplateLoan& loan = choose_template(type, random, families, own);
-    const FamilyTemplate& source = families.templates[static_cast<std::size_t>(loan.from)];
-    SyntheticTooth tooth = draw_tooth(families, type, loan, variation, shared, random);
-    if (is_sound(source, tooth)) return tooth;
-  }
+  for (int draw = 0; draw < most_tooth_draws; ++draw)
+    if (auto tooth = draw_tooth(families, type, seed, draw, variation, shared)) return std::move(*tooth);
   throw NoResultError("No sound tooth of type " + std::to_string(type) + " came out of 20 draws.");
 }
 
@@ -196,7 +202,7 @@ SyntheticTooth mean_tooth(const ToothFamilies& families, int type) {
   require_type(families, type);
   RandomStream unused(0);
   const TemplateLoan own = own_template(families, type);
-  return draw_tooth(families, type, own, no_variation(), {}, unused);
+  return grow_tooth(families, type, own, no_variation(), {}, unused);
 }
 
 }  // namespace rhizodont
