@@ -67,6 +67,14 @@ void read_value(const std::string& file, const std::string& tooth, const std::st
   refuse(file, fmt::format("tooth {} has \"{}\", which is no value of such a table", tooth, name));
 }
 
+/// Central incisors and canines of the upper jaw and canines of the lower one resemble no neighbour.
+void require_neighbours(const std::string& file, const Population& population) {
+  for (const std::size_t type : {0U, 2U, 10U})
+    if (population.teeth[type].neighbour_share > 0)
+      refuse(file, fmt::format("neighbour_share of tooth {} must be 0: it has no neighbour whose form it takes",
+                               fdi_of_type(static_cast<int>(type), false)));
+}
+
 int type_named(const std::string& file, const std::string& tooth) {
   const std::optional<int> fdi = read_fdi(tooth);
   if (!fdi || !is_permanent_tooth(*fdi) || is_right_side(*fdi))
@@ -93,6 +101,7 @@ Population read(std::string_view text, const std::string& file, Population popul
       refuse(file, fmt::format("\"{}\" is not of such a table, or not as it has to be", key));
     }
   }
+  require_neighbours(file, population);
   return population;
 }
 

@@ -20,11 +20,12 @@ struct ToothPopulation {
   double crown_size_deviation = 0;        ///< relative; 0..0.25
   double crown_proportion_deviation = 0;  ///< mesiodistal and buccolingual width each on its own, relative; 0..0.2
   double crown_form_factor = 1;           ///< on the deviations of the crown models' modes and of the surface; 0..2
-  double neighbour_share = 0;             ///< grown from a neighbour's template; upper premolars: with its roots; 0..1
+  double neighbour_share = 0;             ///< grown from a neighbour's template; upper premolars: with its roots; 0..1;
+                                          ///< 0 for 21, 23 and 33, which resemble none
   double fused_share = 0;                 ///< of multi-rooted teeth: roots that part late; 0..1
-  double trunk_mm = 0;                  ///< junction amid the cheek's side to the parting; 0: as in the template; 0..10
-  double trunk_deviation_mm = 0;        ///< 0..4
-  double lean_mesiodistal_degrees = 0;  ///< deviation of the root's line from the crown's axis; 0..15
+  double trunk_mm = 0;  ///< of molars: junction amid the cheek's side to the parting; 0: as in the template; 0..10
+  double trunk_deviation_mm = 0;         ///< 0..4
+  double lean_mesiodistal_degrees = 0;   ///< deviation of the root's line from the crown's axis; 0..15
   double lean_buccolingual_degrees = 0;  ///< 0..15
   double curved_share = 0;               ///< of roots; 0..1
   double curve_degrees = 0;              ///< turn of the tip's chord of curved roots, mean; 0..45
