@@ -50,8 +50,9 @@ struct SynthCommand {
   double grid_mm = 0;
 };
 
-CroppedCrown crop(const SynthCommand& command, const SyntheticTooth& tooth, std::uint64_t seed) {
-  RandomStream random(seed, 200);
+CroppedCrown crop(const SynthCommand& command, const SyntheticTooth& tooth, std::uint64_t seed, int fdi) {
+  // Teeth of one person have one seed, and each its own gum line.
+  RandomStream random(seed, command.person ? 300 + static_cast<std::uint64_t>(fdi) : 200);
   if (!command.clean_cut) return draw_cropped_crown(tooth, 0, 0.3, random);
   return trim_clean(tooth, random);
 }
@@ -118,7 +119,7 @@ void write_tooth(const SynthCommand& command, const ToothFamilies& families, int
   const bool right_side = is_right_side(fdi);
   const SyntheticTooth tooth = command.person ? generate_tooth_of_person(families, fdi, draw_person(seed))
                                               : generate_tooth(families, tooth_type_of_fdi(fdi), seed);
-  const CroppedCrown cropped = crop(command, tooth, seed);
+  const CroppedCrown cropped = crop(command, tooth, seed, fdi);
   const MeshFile file = synthetic_tooth_file(tooth, cropped.line, right_side);
   const auto tooth_name = file_name(command, "tooth", fdi, seed);
   std::vector<OutputFile> files{{tooth_name, mesh_file_bytes(tooth_name, file)}};
@@ -162,7 +163,8 @@ void write_contact_sheet(const SynthCommand& command, const ToothFamilies& famil
   for (int type : types) {
     for (std::size_t i = 0; i < count; ++i) {
       const SyntheticTooth tooth = generate_tooth(families, type, command.seed + i);
-      teeth.push_back(synthetic_tooth_file(tooth, crop(command, tooth, command.seed + i).line, false));
+      teeth.push_back(
+          synthetic_tooth_file(tooth, crop(command, tooth, command.seed + i, fdi_of_type(type, false)).line, false));
     }
   }
   RenderOptions options;
