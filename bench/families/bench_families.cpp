@@ -11,6 +11,7 @@
 #include "registration_error.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
+#include "root_curves.hpp"
 #include "teeth/fdi.hpp"
 #include "training/completion_sample.hpp"
 
@@ -44,7 +45,7 @@ void speed(const ToothFamilies& families, double load_seconds) {
 
 void soundness(const ToothFamilies& families, std::uint64_t seeds) {
   struct Row {
-    std::size_t open = 0, crossing = 0;
+    std::size_t open = 0, crossing = 0, late = 0;
     std::array<std::size_t, 4> roots{};
     double length = 0, squares = 0, shortest = 1e9, longest = 0;
   };
@@ -55,6 +56,7 @@ void soundness(const ToothFamilies& families, std::uint64_t seeds) {
       const SyntheticTooth tooth = generate_tooth(families, type, (std::uint64_t{1} << 33) + seed);
       if (!diagnose(tooth.mesh).is_closed_solid()) ++row.open;
       if (!self_intersecting_triangles(tooth.mesh).empty()) ++row.crossing;
+      if (tooth.apices.size() > 1 && -tooth.furcation_z > 0.6 * tooth.root_length) ++row.late;
       ++row.roots[std::min<std::size_t>(3, tooth.apices.size())];
       row.length += tooth.root_length / static_cast<double>(seeds);
       row.squares += tooth.root_length * tooth.root_length / static_cast<double>(seeds);
@@ -63,13 +65,15 @@ void soundness(const ToothFamilies& families, std::uint64_t seeds) {
     }
   });
   fmt::print(
-      "| tooth | teeth | not closed, genus 0 | with crossing triangles | 1 / 2 / 3 roots | root length mm: mean | "
-      "deviation | least | most |\n|---|---|---|---|---|---|---|---|---|\n");
+      "| tooth | teeth | not closed, genus 0 | with crossing triangles | 1 / 2 / 3 roots | parted late | root length "
+      "mm: mean | "
+      "deviation | least | most |\n|---|---|---|---|---|---|---|---|---|---|\n");
   for (int type = 0; type < tooth_type_count; ++type) {
     const Row& row = rows[static_cast<std::size_t>(type)];
-    fmt::print("| {} | {} | {} | {} | {} / {} / {} | {:.1f} | {:.2f} | {:.1f} | {:.1f} |\n", fdi_of_type(type, false),
-               seeds, row.open, row.crossing, row.roots[1], row.roots[2], row.roots[3], row.length,
-               std::sqrt(std::max(0.0, row.squares - row.length * row.length)), row.shortest, row.longest);
+    fmt::print("| {} | {} | {} | {} | {} / {} / {} | {} | {:.1f} | {:.2f} | {:.1f} | {:.1f} |\n",
+               fdi_of_type(type, false), seeds, row.open, row.crossing, row.roots[1], row.roots[2], row.roots[3],
+               row.late, row.length, std::sqrt(std::max(0.0, row.squares - row.length * row.length)), row.shortest,
+               row.longest);
   }
   fmt::print("\n");
 }
@@ -120,6 +124,7 @@ int run(const std::filesystem::path& data, std::uint64_t seeds) {
   const ToothFamilies families = load_tooth_families(data);
   speed(families, watch.seconds());
   soundness(families, seeds);
+  curve_table(families, seeds);
   registration_table(families, std::max<std::uint64_t>(seeds, 2));
   nearness(families, data);
   return 0;
