@@ -36,17 +36,6 @@ void fit_root_length(HeightMap& map, double template_length, double wanted) {
   }
 }
 
-// Slopes of the map that part the roots at `trunk` and give the wanted root length: both as they come out, for the map
-// rounds the changes of its slope off.
-void fit_trunk_and_root(HeightMap& map, double template_length, double trunk, double wanted) {
-  double low = 0.05, high = 4;
-  for (int i = 0; i < 40; ++i) {
-    map.trunk = 0.5 * (low + high);
-    fit_root_length(map, template_length, wanted);
-    (-map(-map.trunk_depth) < trunk ? low : high) = map.trunk;
-  }
-}
-
 // Of how the length of a single root's neck is stretched against its rest, relative (ours).
 constexpr double neck_deviation = 0.25;
 
@@ -232,12 +221,12 @@ ToothShape draw_shape(const FamilyTemplate& source, const ToothDimensions& mean,
   shape.height.crown = shape.scale.z();
   if (source.roots.size() > 1) {
     shape.height.trunk_depth = std::max(1.0, -source.furcation_z);
-    fit_trunk_and_root(shape.height, source.root_length, branching.share * length, length);
+    shape.height.trunk = branching.share * length / shape.height.trunk_depth;
   } else {
     shape.height.trunk_depth = 3.0;
     shape.height.trunk = shape.scale.z() * random.normal(1.0, variation.trunk * neck_deviation);
-    fit_root_length(shape.height, source.root_length, length);
   }
+  fit_root_length(shape.height, source.root_length, length);
   const double thickness = variation.root_thickness * people.root_thickness_deviation;
   shape.root_section = {random.normal(1.0, thickness), random.normal(1.0, thickness)};
   if (shared.root_thickness)
