@@ -1,25 +1,35 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 
-// What one measured root tells of a person's other roots: bench_people DATA [COUNT [LENGTHS.csv]]. Crowns of generated
-// people (28 teeth each, families/person.hpp) are completed one by one; then the length of one root is taken as
-// measured and the others' expectations are conditioned on it (arch/person_lengths.hpp). All lengths go to LENGTHS.csv.
+// What one measured root tells of a person's other roots: bench_people DATA [COUNT [LENGTHS.csv]]. The roots of
+// generated people's crowns (28 teeth each, families/person.hpp) are predicted one by one, by the network's points
+// alone; then the length of one root is taken as measured and the others' expectations are conditioned on it
+// (arch/person_lengths.hpp). Correlations of the errors in their deviations, by pairs of fellows and of any other two
+// teeth, are what PersonLengthModel states. All lengths go to LENGTHS.csv.
 #include "arch/person_lengths.hpp"
 #include "base/random_stream.hpp"
+#include "completion/registration.hpp"
+#include "completion/uncertainty.hpp"
 #include "families/crown_crop.hpp"
 #include "families/person.hpp"
 #include "mesh/geometry.hpp"
-#include "rhizodont/complete.hpp"
+#include "pipeline/models.hpp"
+#include "pipeline/prediction.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/models.hpp"
 #include "teeth/fdi.hpp"
+#include "teeth/prepared_crown.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <vector>
@@ -33,23 +43,27 @@ struct Length {
   double truth = 0;
 };
 
-/// A generated crown's root as completed and as it is, both from the crown's lowest point along the same axis.
-std::optional<Length> length_of(const ToothFamilies& families, const CompletionModels& models, int fdi,
+/// A generated crown's root as predicted and as it is, both from the crown's lowest point along the same axis.
+std::optional<Length> length_of(const ToothFamilies& families, const CompletionModels::Content& models, int fdi,
                                 const PersonDraw& person) {
   constexpr double paper_share = 0.15, gap_probability = 0.35, half_of_80_percent = 1.2816;
   try {
     const SyntheticTooth tooth = generate_tooth_of_person(families, fdi, person);
     RandomStream random(person.seed, static_cast<std::uint64_t>(fdi));
     const TriangleMesh crown = draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh;
-    CompleteOptions options;
-    // Right teeth are made as their left fellows.
-    options.fdi = is_right_side(fdi) ? (fdi < 20 ? fdi + 10 : fdi - 10) : fdi;
-    const CompletionRecord record = complete_tooth(crown, models, options).record;
-    if (!record.root.interval) return std::nullopt;
-    const Eigen::Vector3d& axis = record.frame.growth_axis;
-    const double truth = extent_along(crown.vertices, axis).first - extent_along(tooth.mesh.vertices, axis).first;
-    const double wide = record.root.interval->length_high_mm - record.root.interval->length_low_mm;
-    return Length{{record.root.length_mm, wide / (2 * half_of_80_percent)}, truth};
+    const int type = tooth_type_of_fdi(fdi), left = fdi_of_type(type, false);  // right teeth are made as left ones
+    const CrownFrame frame =
+        canonical_frame(prepare_crown(crown), left, models.atlas.types[static_cast<std::size_t>(type)]);
+    const RootPrediction predicted =
+        predict_tooth(crown, left, frame, models, [](const RootPrediction&) { return true; });
+    const Eigen::Vector3d axis = frame.frame.direction_to_world(Eigen::Vector3d::UnitZ());
+    const double lowest = extent_along(crown.vertices, axis).first;
+    const double length = lowest - extent_along(predicted.tooth.cloud.points, axis).first;
+    const auto scales = uncertainty_scales(models.network.metadata());
+    if (!scales) return std::nullopt;
+    const auto [low, high] = length_interval(length, expected_distance_at_apex(predicted.tooth, axis), *scales);
+    const double truth = lowest - extent_along(tooth.mesh.vertices, axis).first;
+    return Length{{length, (high - low) / (2 * half_of_80_percent)}, truth};
   } catch (const Error&) {
     return std::nullopt;
   }
@@ -57,7 +71,7 @@ std::optional<Length> length_of(const ToothFamilies& families, const CompletionM
 
 using Person = std::map<int, Length>;
 
-std::vector<Person> people(const ToothFamilies& families, const CompletionModels& models, std::size_t count) {
+std::vector<Person> people(const ToothFamilies& families, const CompletionModels::Content& models, std::size_t count) {
   std::vector<int> teeth;
   for (const int quadrant : {1, 2, 3, 4})
     for (int place = 1; place <= 7; ++place) teeth.push_back(10 * quadrant + place);
@@ -106,6 +120,45 @@ void print_row(const std::vector<Person>& all, const std::vector<int>& measured)
              100 * (1 - after.mm() / before.mm()));
 }
 
+/// How errors of two teeth go together: the correlation of what lies between truth and expectation, in deviations.
+struct Together {
+  double product = 0, of_first = 0, of_second = 0;
+  void add(double a, double b) { product += a * b, of_first += a * a, of_second += b * b; }
+  double correlation() const { return product / std::sqrt(std::max(1e-12, of_first * of_second)); }
+};
+
+void print_correlations(const std::vector<Person>& all) {
+  // A type's bias is no person's.
+  std::array<double, tooth_type_count> bias{}, count{};
+  const auto error = [](const Length& length) {
+    return (length.truth - length.expected.mm) / length.expected.deviation_mm;
+  };
+  for (const Person& person : all)
+    for (const auto& [fdi, length] : person) {
+      const auto type = static_cast<std::size_t>(tooth_type_of_fdi(fdi));
+      bias[type] += error(length), count[type] += 1;
+    }
+  Together fellows, others, truths_of_fellows, truths_of_others;
+  std::array<double, tooth_type_count> mean_length{};
+  for (const Person& person : all)
+    for (const auto& [fdi, length] : person) {
+      const auto type = static_cast<std::size_t>(tooth_type_of_fdi(fdi));
+      mean_length[type] += length.truth / count[type];
+    }
+  for (const Person& person : all)
+    for (auto a = person.begin(); a != person.end(); ++a)
+      for (auto b = std::next(a); b != person.end(); ++b) {
+        const auto i = static_cast<std::size_t>(tooth_type_of_fdi(a->first)),
+                   j = static_cast<std::size_t>(tooth_type_of_fdi(b->first));
+        (i == j ? fellows : others).add(error(a->second) - bias[i] / count[i], error(b->second) - bias[j] / count[j]);
+        (i == j ? truths_of_fellows : truths_of_others)
+            .add(a->second.truth - mean_length[i], b->second.truth - mean_length[j]);
+      }
+  fmt::print("correlations of errors: fellows {:.2f}, others {:.2f}; of true lengths: {:.2f}, {:.2f}\n\n",
+             fellows.correlation(), others.correlation(), truths_of_fellows.correlation(),
+             truths_of_others.correlation());
+}
+
 }  // namespace
 
 int main(int count, char** words) {
@@ -115,10 +168,11 @@ int main(int count, char** words) {
   }
   const std::size_t number = count > 2 ? std::strtoul(words[2], nullptr, 10) : 20;
   const std::vector<Person> all =
-      people(load_tooth_families(words[1]), CompletionModels::load(default_models_folder()), number);
+      people(load_tooth_families(words[1]), *content_of(CompletionModels::load(default_models_folder())), number);
   if (count > 3) write_lengths(all, words[3]);
   std::size_t teeth = 0;
   for (const Person& person : all) teeth += person.size();
+  print_correlations(all);
   fmt::print(
       "{} people, {} of {} teeth\n\n| measured | mean error of the others before, mm | after | less |\n"
       "|---|---|---|---|\n",
