@@ -16,13 +16,13 @@ struct LengthExpectation {
 
 /// How far the errors of expected root lengths go together within one person, as correlations.
 struct PersonLengthModel {
-  /// [0, 1): of a tooth and its fellow on the other side: what these share of their lengths. On 672 crowns of 24
-  /// generated people it was 0.79 to 0.82 (`bench_people`) where lengths of fellows shared 0.8 of their variance.
-  double fellow = shared_root_length.of_person + shared_root_length.of_pair;
-  /// [0, fellow]: of any other two teeth: a part of what the person's teeth share of their lengths. On the same crowns
-  /// 0.10 to 0.12 where lengths shared 0.4: the crown tells a part of what teeth share, and resorption, wear and cuts
-  /// are each tooth's own. Hence 0.3 of it.
-  double others = 0.3 * shared_root_length.of_person;
+  /// [0, 1): of a tooth and its fellow on the other side: a part of what these share of their lengths. On 672 crowns of
+  /// 24 generated people it was 0.59 (`bench_people`) where lengths of fellows shared 0.8 of their variance: how crowns
+  /// are cut, and resorption and wear, are each tooth's own.
+  double fellow = 0.75 * (shared_root_length.of_person + shared_root_length.of_pair);
+  /// [0, fellow]: of any other two teeth. On the same crowns 0.20 where lengths shared 0.5, for the crown tells a part
+  /// of what teeth share.
+  double others = 0.4 * shared_root_length.of_person;
   double measurement_mm = 0.3;  ///< > 0: standard deviation of a length measured on an X-ray
 };
 
