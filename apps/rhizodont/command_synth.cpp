@@ -199,6 +199,8 @@ void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
 SynthArches arches_of(const SynthCommand& command) {
   SynthArches arches{
       command.data, command.output, command.sheet, command.count, command.seed, command.crown_format, {}};
+  if (command.person || !command.population.empty())
+    throw UsageError("Scans of arches are made of models of crowns: --person and --population are for teeth.");
   if (command.output.empty() && command.sheet.empty())
     throw UsageError("Say where to: -o FOLDER for arches, --sheet PNG for a picture of them.");
   if (arches.format == "stl")

@@ -16,7 +16,7 @@ struct ToothPopulation {
   double root_length_mm = 0;              ///< mean of the longest root, from the junction amid the cheek's side; 4..30
   double root_length_deviation_mm = 0;    ///< with what goes with the crown's size; 0..6
   double root_follows_crown = 0;          ///< exponent with which the root's length follows the crown's size; 0..1
-  double crown_size = 1;                  ///< over the mean dimensions of anatomy.csv; 0.7..1.4
+  double crown_size = 1;                  ///< of its widths, over the means of anatomy.csv; 0.7..1.4
   double crown_size_deviation = 0;        ///< relative; 0..0.25
   double crown_proportion_deviation = 0;  ///< mesiodistal and buccolingual width each on its own, relative; 0..0.2
   double crown_form_factor = 1;           ///< on the deviations of the crown models' modes and of the surface; 0..2

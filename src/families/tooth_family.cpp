@@ -14,6 +14,7 @@
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
 
+#include <fmt/format.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -195,7 +196,7 @@ SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint
                               const ToothVariation& variation, const SharedDraws& shared) {
   for (int draw = 0; draw < most_tooth_draws; ++draw)
     if (auto tooth = draw_tooth(families, type, seed, draw, variation, shared)) return std::move(*tooth);
-  throw NoResultError("No sound tooth of type " + std::to_string(type) + " came out of 20 draws.");
+  throw NoResultError(fmt::format("No sound tooth of type {} came out of {} draws.", type, most_tooth_draws));
 }
 
 SyntheticTooth mean_tooth(const ToothFamilies& families, int type) {

@@ -169,11 +169,13 @@ struct SharedDraws {
 
 /// Draws tooth number `seed` of a type (0..15). Depends on the arguments alone. A draw that folds, turns over or lets
 /// triangles run into each other is rejected and drawn again.
-/// Throws UsageError for a bad type or one that was not loaded, NoResultError after 20 rejected draws.
+/// Throws UsageError for a bad type or one that was not loaded, NoResultError after
+/// `most_tooth_draws` rejected draws.
 SyntheticTooth generate_tooth(const ToothFamilies& families, int type, std::uint64_t seed,
                               const ToothVariation& variation = {}, const SharedDraws& shared = {});
 
-/// Draw number `draw` (0..19) of that tooth; nothing where it is rejected. Throws UsageError as `generate_tooth`.
+/// Draw number `draw` (0..most_tooth_draws - 1) of that tooth; nothing where it is rejected. Throws UsageError as
+/// `generate_tooth`.
 std::optional<SyntheticTooth> draw_tooth(const ToothFamilies& families, int type, std::uint64_t seed, int draw,
                                          const ToothVariation& variation, const SharedDraws& shared);
 inline constexpr int most_tooth_draws = 20;

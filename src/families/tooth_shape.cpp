@@ -74,7 +74,9 @@ Eigen::Vector2d draw_curve(const ToothPopulation& people, const Eigen::Vector2d&
   // The curve begins where it has made a twentieth of its way.
   constexpr double begun = 0.05;
   const double run = length * (1 - std::pow(begun, 1 / power));
-  const double size = std::tan(variation.curvature * angle * std::numbers::pi / 180) * run / (1 - begun);
+  constexpr double most_degrees = 60;  // beyond, the root's tip would be farther aside than down
+  const double turn = std::min(variation.curvature * angle, most_degrees) * std::numbers::pi / 180;
+  const double size = std::tan(turn) * run / (1 - begun);
   const Eigen::Vector2d direction = is_usual ? Eigen::Vector2d(Eigen::Rotation2Dd(aside) * usual)
                                              : Eigen::Vector2d(std::cos(anywhere), std::sin(anywhere));
   return size * direction;

@@ -77,9 +77,8 @@ std::optional<std::string> which_jaw_was_read(const TriangleMesh& scan, const st
                          middle.x(), middle.y(), middle.z());
   }
   return fmt::format(
-      "The scan has {} pieces of a jaw's size, and the search reads one jaw. Teeth found: {}. Write each jaw into a "
-      "file "
-      "of its own.",
+      "The scan has {} pieces of a jaw's size, and the search reads one jaw. Teeth found: {}. Write each jaw "
+      "into a file of its own.",
       jaws.size(), where);
 }
 
