@@ -172,6 +172,7 @@ void write_contact_sheet(const SynthCommand& command, const ToothFamilies& famil
   options.height = 190;
   options.views = {"back", "right", "top"};
   std::vector<RenderItem> items;
+  items.reserve(teeth.size());
   for (const MeshFile& tooth : teeth)
     items.push_back({&tooth.mesh, colours_by_source(tooth.mesh, tooth.vertex_attributes.at(source_attribute).values),
                      Eigen::Vector3d::UnitZ().eval()});
