@@ -23,24 +23,27 @@ set(notice "A predicted root is typical for such a crown, not the patient's anat
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME rhizodont)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "rhizodont-models ${same}")
+# The first line of each description is the project's.
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
-    "${PROJECT_DESCRIPTION}\n The program: complete, arch, segment, batch, check, measure, render, evaluate and synth; and a local\n page (rhizodont serve). ${notice}")
+    "The program: complete, arch, segment, batch, check, measure, render, evaluate and synth; and a local page\n (rhizodont serve). ${notice}")
 
 set(CPACK_DEBIAN_MODELS_PACKAGE_NAME rhizodont-models)
 set(CPACK_DEBIAN_MODELS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_MODELS_PACKAGE_ARCHITECTURE all)
 set(CPACK_DEBIAN_MODELS_PACKAGE_SHLIBDEPS OFF)
-set(CPACK_COMPONENT_MODELS_DESCRIPTION "weights and mean teeth of Rhizodont\n Each file with a card that says what it was made of.")
+set(CPACK_COMPONENT_MODELS_DESCRIPTION "Weights and mean teeth, each file with a card that says what it was made of.")
 
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME librhizodont${PROJECT_VERSION_MAJOR})
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "rhizodont-models ${same}")
-set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "library of Rhizodont\n ${notice}")
+file(WRITE ${PROJECT_BINARY_DIR}/triggers "activate-noawait ldconfig\n")
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION "The shared library. ${notice}")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME librhizodont-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "librhizodont${PROJECT_VERSION_MAJOR} ${same}, libeigen3-dev")
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "headers of Rhizodont's library\n For find_package(Rhizodont).")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Headers and CMake files of the library, for find_package(Rhizodont).")
 
 if(RHIZODONT_PYTHON)
   list(APPEND CPACK_COMPONENTS_ALL python)
@@ -48,7 +51,7 @@ if(RHIZODONT_PYTHON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
       "librhizodont${PROJECT_VERSION_MAJOR} ${same}, python3 (>= 3.11), python3 (<< 3.12), python3-numpy")
-  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Python module of Rhizodont\n ${notice}")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python module. ${notice}")
 endif()
 
 # Every package says under which licence it stands.

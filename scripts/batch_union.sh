@@ -14,8 +14,11 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 count=${1:-200}
 scans=${2:+$(realpath "$2")}
+# Shards have a thread each, unless OPTIONS says otherwise.
+threads=(--threads 1)
 program=$(realpath "${BUILD:-build}/apps/rhizodont/rhizodont")
 read -r -a options <<<"${OPTIONS:---e 1}"
+[[ " ${options[*]} " != *" --threads "* ]] || threads=()
 if [ -n "${OUT:-}" ]; then mkdir -p "$OUT"; work=$(realpath "$OUT"); else
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
@@ -76,9 +79,9 @@ batch -o whole
 whole=$(awk "BEGIN { print $(date +%s.%N) - $begin }")
 
 begin=$(date +%s.%N)
-"$program" batch manifest.csv -o parts --shard 1/2 --threads 1 "${options[@]}" --quiet &
+"$program" batch manifest.csv -o parts --shard 1/2 "${threads[@]}" "${options[@]}" --quiet &
 victim=$!
-batch -o parts --shard 2/2 --threads 1 &
+batch -o parts --shard 2/2 "${threads[@]}" &
 other=$!
 # At some case of its own, some time after its beginning.
 cases=$(((count + 1) / 2))
@@ -92,7 +95,7 @@ if kill -KILL "$victim" 2>/dev/null; then killed="killed $moment s after its cas
 wait "$victim" 2>/dev/null || true
 # It may have been killed before either shard had begun.
 ! grep -qs '"event":"run"' parts/ledger/*.jsonl || "$program" batch status parts
-batch -o parts --shard 1/2 --threads 1
+batch -o parts --shard 1/2 "${threads[@]}"
 wait "$other"
 parts=$(awk "BEGIN { print $(date +%s.%N) - $begin }")
 "$program" batch status parts

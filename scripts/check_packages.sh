@@ -36,8 +36,7 @@ if [ $fresh = yes ]; then
   place= crown=/crown_11.stl
 else
   for package in "$packages"/*.deb; do dpkg-deb -x "$package" "$root"; done
-  run=(env -u RHIZODONT_MODELS "PYTHONPATH=$root/usr/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1
-       "LD_LIBRARY_PATH=$(dirname "$(find "$root" -name 'librhizodont.so.0')")")
+  run=(env -u RHIZODONT_MODELS "PYTHONPATH=$root/usr/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1)
   place=$root crown=samples/crown_11.stl
 fi
 "${run[@]}" "$place/usr/bin/rhizodont" complete "$crown" --fdi 11 --e 1 -o "$place/tooth.ply" --overwrite

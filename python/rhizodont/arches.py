@@ -29,7 +29,7 @@ class FoundTooth:
     vertices: int
 
 
-@dataclass
+@dataclass(eq=False)
 class SegmentedScan:
     labels: Ints
     """Per vertex of the scan its FDI number, 0 for gum and everything else."""
@@ -40,7 +40,7 @@ class SegmentedScan:
     notes: list[str]
 
 
-@dataclass
+@dataclass(eq=False)
 class ToothOfArch:
     fdi: int
     crown: Mesh
@@ -65,7 +65,7 @@ class Clearance:
     crown_root: Optional[float]
 
 
-@dataclass
+@dataclass(eq=False)
 class Arch:
     teeth: list[ToothOfArch]
     clearances: list[Clearance]
@@ -118,7 +118,8 @@ def complete_arch(
     **options: Any,
 ) -> Arch:
     """Every tooth of a scan with its root. labels: per vertex the FDI number, 0 for gum; None: teeth are found first.
-    root_lengths: FDI number to mm, measured on X-rays; clearance: mm, for resolve_collisions; options: of every tooth
+    root_lengths: FDI number to mm, measured on X-rays; progress is called with how many teeth are done, of how many, and the
+    last one's number; clearance: mm, for resolve_collisions; options: of every tooth
     (`tooth_options`), by default with the skirt dropped and defects mended. A tooth that is refused does not stop the
     others. Raises InputError, UsageError."""
     of = mesh_of(scan)

@@ -19,7 +19,7 @@ Ints = npt.NDArray[np.int32]
 PathLike = Union[str, "os.PathLike[str]"]
 
 
-@dataclass
+@dataclass(eq=False)
 class Mesh:
     """An indexed triangle mesh: vertices n x 3 (float64), triangles m x 3 (int32), counterclockwise from outside."""
 
@@ -52,6 +52,8 @@ def mesh_of(source: Any) -> Mesh:
         return source
     if isinstance(source, (str, os.PathLike)):
         return load(source)
+    if hasattr(source, "to_legacy"):  # Open3D's mesh of tensors
+        return mesh_of(source.to_legacy())
     if hasattr(source, "mesh") and isinstance(source.mesh, Mesh):
         return source.mesh
     if isinstance(source, (tuple, list)) and len(source) == 2:

@@ -7,7 +7,7 @@ from __future__ import annotations
 import json
 import os
 from functools import cached_property
-from typing import Any, Callable, Optional, Union
+from typing import Any, Callable, Iterable, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -134,7 +134,19 @@ class PreparedTooth:
     ) -> Tooth:
         """root_length, transition: mm; tip, torque, bend: degrees, as in `complete`."""
         options = {"steering": _steering(root_length, tip, torque, bend), "transition_mm": transition}
-        return Tooth(_core.finish(self._core, json.dumps(options), progress))
+        return Tooth(_core.finish(self._core, _json(options), progress))
+
+
+def _json(options: dict[str, Any]) -> str:
+    def plain(value: Any) -> Any:
+        if isinstance(value, (np.generic, np.ndarray)):
+            return value.tolist()
+        raise TypeError(f"A {type(value).__name__} is no value of an option.")
+
+    try:
+        return json.dumps(options, default=plain, allow_nan=False)
+    except ValueError:
+        raise _core.UsageError("An option of the tooth is not a finite number.") from None
 
 
 def _steering(
@@ -181,7 +193,7 @@ def tooth_options(
         "steering": _steering(root_length, tip, torque, bend) or None,
     }
     given = {name: value for name, value in named.items() if value is not None}
-    return json.dumps({**json.loads(defaults), **given})
+    return _json({**json.loads(defaults), **given})
 
 
 def complete(crown: Any, models: Models, *, progress: Optional[Progress] = None, **options: Any) -> Tooth:
@@ -211,11 +223,12 @@ def candidates(
     return [Tooth(core) for core in cores]
 
 
-def check(crown: Any, tooth: Any, *, dropped_vertices: Optional[list[int]] = None) -> dict[str, Any]:
+def check(crown: Any, tooth: Any, *, dropped_vertices: Optional[Iterable[int]] = None) -> dict[str, Any]:
     """Proves that a mesh is a solid that holds the crown bit for bit, however it was made; in the words of
     `rhizodont check --json`. dropped_vertices: of the crown, that are not the tooth's."""
     if isinstance(tooth, Tooth) and dropped_vertices is None:
         return tooth.check(crown)
     a, b = mesh_of(crown), mesh_of(tooth)
-    text = _core.check(a.vertices, a.triangles, b.vertices, b.triangles, dropped_vertices or [])
+    dropped = [] if dropped_vertices is None else [int(v) for v in dropped_vertices]
+    text = _core.check(a.vertices, a.triangles, b.vertices, b.triangles, dropped)
     return dict(json.loads(text))

@@ -7,13 +7,13 @@
 #include "base/option_range.hpp"
 #include "families/population_tables.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/io.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <fstream>
-#include <iterator>
 #include <optional>
+#include <string_view>
 
 namespace rhizodont {
 namespace {
@@ -117,10 +117,12 @@ Population read_population(std::string_view text, const std::string& file) {
 }
 
 Population load_population(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) throw InputError("The table of a population " + file.string() + " cannot be read.");
-  return read_population(text, file.string());
+  try {
+    return read_population(read_file_bytes(file), file.string());
+  } catch (const InputError& error) {
+    if (std::string_view(error.what()).find(file.string()) != std::string_view::npos) throw;
+    throw error.reworded(fmt::format("The table of a population {} cannot be read: {}", file.string(), error.what()));
+  }
 }
 
 }  // namespace rhizodont

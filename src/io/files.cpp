@@ -58,7 +58,8 @@ void require_writable(const std::map<std::string, VertexAttribute>& attributes, 
           fmt::format("the attribute '{}' has {} values for {} {}", name, attribute.values.size(), count, of_what));
     if (!holds_exactly(attribute))
       throw InputError(fmt::format("the attribute '{}' has values that its type of number cannot hold", name));
-    if (name.empty() || name.find_first_of(" \t\r\n") != std::string::npos)
+    const bool is_coordinate = name == "x" || name == "y" || name == "z" || name == "vertex_indices";
+    if (name.empty() || is_coordinate || name.find_first_of(" \t\r\n") != std::string::npos)
       throw InputError(fmt::format("'{}' is no name for an attribute", name));
   }
 }

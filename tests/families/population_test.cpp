@@ -68,6 +68,7 @@ TEST(Population, WhatCannotBeUsedIsNamed) {
   names(with_teeth(R"({"36": {"fused_share": -0.1}})"), "fused_share of tooth 36 is -0.1");
   names(with_teeth(R"({"23": {"neighbour_share": 0.2}})"), "neighbour_share of tooth 23 must be 0");
   EXPECT_THROW(load_population("/no/such/table.json"), InputError);
+  EXPECT_THROW(load_population("/tmp"), InputError);
 }
 
 }  // namespace

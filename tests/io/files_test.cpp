@@ -60,7 +60,7 @@ TEST(Files, InvalidMeshesAreNotWritten) {
   const fs::path path = folder.path() / "a.ply";
   save_mesh(path, cube_file());
   const std::string before = test::read_all(path);
-  std::vector<MeshFile> bad(7, cube_file());
+  std::vector<MeshFile> bad(8, cube_file());
   bad[0].mesh.triangles[3][1] = 8;
   bad[1].mesh.vertices[2].y() = std::numeric_limits<double>::infinity();
   bad[2].mesh.triangles.clear();
@@ -68,6 +68,7 @@ TEST(Files, InvalidMeshesAreNotWritten) {
   bad[4].vertex_attributes["source"] = {AttributeType::uint8, std::vector<double>(8, 256)};
   bad[5].vertex_attributes["two words"] = {AttributeType::float32, std::vector<double>(8, 1)};
   bad[6].comments = {"end_header\n"};
+  bad[7].vertex_attributes["x"] = {AttributeType::float32, std::vector<double>(8, 1)};
   for (const MeshFile& file : bad) EXPECT_THROW(save_mesh(path, file), InputError);
   EXPECT_EQ(test::read_all(path), before);
   EXPECT_EQ(folder.file_count(), 1U);

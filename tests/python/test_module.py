@@ -148,6 +148,9 @@ def test_errors_are_exceptions_with_ids(crown, models, tmp_path):
         rhizodont.complete((crown.vertices, crown.triangles + 0.5), models)
     with pytest.raises(rhizodont.InputError, match="Labels must be whole"):
         rhizodont.complete_arch(crown, models, np.full(len(crown.vertices), 11.5))
+    for value in (float("nan"), float("inf")):
+        with pytest.raises(rhizodont.UsageError, match="finite"):
+            rhizodont.complete(crown, models, e=value)
     bad = crown.vertices.copy()
     bad[7, 1] = np.nan
     with pytest.raises(rhizodont.InputError) as caught:
@@ -183,6 +186,15 @@ def test_open3d_mesh(crown):
         open3d.utility.Vector3dVector(crown.vertices), open3d.utility.Vector3iVector(crown.triangles)
     )
     assert rhizodont.mesh_of(mesh).vertices.tobytes() == crown.vertices.tobytes()
+    of_tensors = open3d.t.geometry.TriangleMesh.from_legacy(mesh)
+    assert np.array_equal(rhizodont.mesh_of(of_tensors).triangles, crown.triangles)
+
+
+def test_options_of_numpy(crown, models):
+    plain = rhizodont.complete(crown, models, fdi=11, e=2, root_length=13)
+    numbers = rhizodont.complete(crown, models, fdi=np.array([11])[0], e=np.float64(2), root_length=np.float32(13))
+    assert plain.vertices.tobytes() == numbers.vertices.tobytes()
+    assert rhizodont.check(crown, plain, dropped_vertices=np.array([], dtype=int))["holds"]
 
 
 def test_measure_is_that_of_the_program(crown):
