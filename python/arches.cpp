@@ -23,27 +23,6 @@ namespace {
 using LabelArray = py::array_t<int, py::array::c_style | py::array::forcecast>;
 using Progress = std::function<void(int, int, int)>;
 
-/// @param tooth  options of every tooth as JSON
-CompletedArch arch(const VertexArray& vertices, const TriangleArray& triangles, const LabelArray& labels,
-                   const CompletionModels& models, const std::string& tooth, const std::map<int, double>& root_lengths,
-                   bool resolve_collisions, double clearance_mm, const Progress& progress) {
-  LabelledScan scan{mesh_of(vertices, triangles), {}};
-  if (labels.ndim() != 1) throw InputError("Labels must be an array of one number per vertex.");
-  scan.fdi.assign(labels.data(), labels.data() + labels.size());
-  ArchOptions options;
-  options.tooth = options_from_json(tooth);
-  options.root_lengths = root_lengths;
-  options.resolve_collisions = resolve_collisions;
-  options.clearance_mm = clearance_mm;
-  const ArchProgress callback = [&progress](int done, int teeth, int fdi) {
-    const py::gil_scoped_acquire lock;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    if (progress) progress(done, teeth, fdi);
-  };
-  const py::gil_scoped_release release;
-  return complete_arch(scan, models, options, callback);
-}
-
 py::dict found_tooth(const FoundTooth& tooth) {
   py::dict found;
   found["fdi"] = tooth.fdi;
@@ -106,6 +85,39 @@ py::dict taken_tooth(ToothOfArch& tooth) {
   return result;
 }
 
+/// @param tooth  options of every tooth as JSON
+py::dict arch(const VertexArray& vertices, const TriangleArray& triangles, const LabelArray& labels,
+              const CompletionModels& models, const std::string& tooth, const std::map<int, double>& root_lengths,
+              bool resolve_collisions, double clearance_mm, const Progress& progress) {
+  LabelledScan scan{mesh_of(vertices, triangles), {}};
+  if (labels.ndim() != 1) throw InputError("Labels must be an array of one number per vertex.");
+  scan.fdi.assign(labels.data(), labels.data() + labels.size());
+  ArchOptions options;
+  options.tooth = options_from_json(tooth);
+  options.root_lengths = root_lengths;
+  options.resolve_collisions = resolve_collisions;
+  options.clearance_mm = clearance_mm;
+  const ArchProgress callback = [&progress](int done, int teeth, int fdi) {
+    const py::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (progress) progress(done, teeth, fdi);
+  };
+  CompletedArch done;
+  {
+    const py::gil_scoped_release release;
+    done = complete_arch(scan, models, options, callback);
+  }
+  py::list teeth, clearances;
+  for (ToothOfArch& one : done.teeth) teeth.append(taken_tooth(one));
+  for (const ToothClearance& pair : done.clearances) clearances.append(clearance_of(pair));
+  py::dict result;
+  result["teeth"] = teeth;
+  result["clearances"] = clearances;
+  result["gum"] = arrays_of(std::move(done.gum));
+  result["notes"] = done.notes;
+  return result;
+}
+
 }  // namespace
 
 void bind_arches(py::module_& module) {
@@ -114,25 +126,9 @@ void bind_arches(py::module_& module) {
           "load", [](const std::filesystem::path& folder) { return SegmentModels::load(folder); }, py::arg("folder"),
           py::call_guard<py::gil_scoped_release>());
   module.def("arch_tooth_options", [] { return options_to_json(ArchOptions::skirt_and_repair()); });
-  module.def(
-      "arch",
-      [](const VertexArray& vertices, const TriangleArray& triangles, const LabelArray& labels,
-         const CompletionModels& models, const std::string& tooth, const std::map<int, double>& root_lengths,
-         bool resolve_collisions, double clearance_mm, const Progress& progress) {
-        CompletedArch done =
-            arch(vertices, triangles, labels, models, tooth, root_lengths, resolve_collisions, clearance_mm, progress);
-        py::list teeth, clearances;
-        for (ToothOfArch& one : done.teeth) teeth.append(taken_tooth(one));
-        for (const ToothClearance& pair : done.clearances) clearances.append(clearance_of(pair));
-        py::dict result;
-        result["teeth"] = teeth;
-        result["clearances"] = clearances;
-        result["gum"] = arrays_of(std::move(done.gum));
-        result["notes"] = done.notes;
-        return result;
-      },
-      py::arg("vertices"), py::arg("triangles"), py::arg("labels"), py::arg("models"), py::arg("tooth"),
-      py::arg("root_lengths"), py::arg("resolve_collisions"), py::arg("clearance_mm"), py::arg("progress"));
+  module.def("arch", &arch, py::arg("vertices"), py::arg("triangles"), py::arg("labels"), py::arg("models"),
+             py::arg("tooth"), py::arg("root_lengths"), py::arg("resolve_collisions"), py::arg("clearance_mm"),
+             py::arg("progress"));
   module.def("segment", &segment, py::arg("vertices"), py::arg("triangles"), py::arg("models"),
              py::arg("millimetres_per_unit"), py::arg("jaw"), py::arg("missing"), py::arg("teeth"), py::arg("threads"));
 }
