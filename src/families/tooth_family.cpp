@@ -161,6 +161,14 @@ SyntheticTooth grow_tooth(const ToothFamilies& families, int type, const Templat
   return tooth;
 }
 
+void require_type(const ToothFamilies& families, int type) {
+  if (type < 0 || type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
+  if (families.templates[static_cast<std::size_t>(type)].mesh.vertices.empty())
+    throw UsageError("The template of tooth type " + std::to_string(type) + " was not loaded.");
+}
+
+}  // namespace
+
 ToothVariation no_variation() {
   ToothVariation none;
   none.crown_modes = none.crown_mean = none.size = none.proportion = none.crown_height = 0;
@@ -171,14 +179,6 @@ ToothVariation no_variation() {
   none.wear_mm = none.wear_share = none.decay_share = none.bracket_share = 0;
   return none;
 }
-
-void require_type(const ToothFamilies& families, int type) {
-  if (type < 0 || type >= tooth_type_count) throw UsageError("Tooth types go from 0 to 15.");
-  if (families.templates[static_cast<std::size_t>(type)].mesh.vertices.empty())
-    throw UsageError("The template of tooth type " + std::to_string(type) + " was not loaded.");
-}
-
-}  // namespace
 
 std::optional<SyntheticTooth> draw_tooth(const ToothFamilies& families, int type, std::uint64_t seed, int draw,
                                          const ToothVariation& variation, const SharedDraws& shared) {

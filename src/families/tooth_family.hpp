@@ -141,6 +141,9 @@ struct ToothVariation {
   double bracket_share = 0.05;      ///< share of crowns with a bracket or attachment, 0..1
 };
 
+/// Every tooth of a type is the mean one.
+ToothVariation no_variation();
+
 /// A generated whole tooth, millimetres, in the frame of FamilyTemplate, and what is known about it.
 struct SyntheticTooth {
   int type = 0;                          ///< 0..15, left side

@@ -25,18 +25,6 @@ namespace {
 
 using test::correlation, test::deviation_of, test::mean_of, test::molar;
 
-/// Nothing varies but what a test switches on.
-ToothVariation nothing_varies() {
-  ToothVariation none;
-  none.crown_modes = none.crown_mean = none.size = none.proportion = none.crown_height = 0;
-  none.root_length = none.trunk = none.warp_mm = none.root_thickness = none.taper = none.lean = 0;
-  none.distal_bend_mm = none.curvature = none.dilaceration = none.divergence_mm = none.fusion = 0;
-  none.junction_curve = none.blunt_share = none.short_roots = none.open_apex_share = none.resorption_share = 0;
-  none.bulbous_share = none.deciduous_share = 0;
-  none.wear_mm = none.wear_share = none.decay_share = none.bracket_share = 0;
-  return none;
-}
-
 class People : public test::OneTemplate {
  protected:
   static constexpr int upper_molar = 5;
@@ -76,7 +64,7 @@ TEST_F(People, RootsAreLongerByWhatATableSays) {
 }
 
 TEST_F(People, LengthsDeviateByWhatATableSays) {
-  ToothVariation variation = nothing_varies();
+  ToothVariation variation = no_variation();
   variation.root_length = 1;
   for (const double wanted : {0.6, 1.8}) {
     const std::string table =
@@ -88,7 +76,7 @@ TEST_F(People, LengthsDeviateByWhatATableSays) {
 
 TEST_F(People, RootsPartWhereATableSays) {
   const auto trunk = [&](const std::string& table) {
-    ToothVariation variation = nothing_varies();
+    ToothVariation variation = no_variation();
     variation.fusion = 1;
     return mean_of(of_molars(grown(table), variation, [](const SyntheticTooth& t) { return -t.furcation_z; }));
   };
@@ -103,7 +91,7 @@ TEST_F(People, RootsPartWhereATableSays) {
 TEST_F(People, LengthsOfOnePersonGoTogetherAsStated) {
   const ToothFamilies families = grown("", {upper_molar, molar});
   ASSERT_TRUE(families.loans.empty());
-  ToothVariation variation = nothing_varies();
+  ToothVariation variation = no_variation();
   variation.root_length = 1;
   constexpr std::size_t people = 300;
   std::vector<double> left(people), right(people), other(people);
@@ -149,7 +137,7 @@ TEST_F(People, LeftAndRightDifferByWhatIsTheirOwnAlone) {
 TEST_F(People, OnlyTheYoungHaveImmatureRootsThirdMolarsLongest) {
   constexpr int third_molar = 15;
   const ToothFamilies families = grown("", {molar, third_molar});
-  ToothVariation open = nothing_varies(), closed = nothing_varies();
+  ToothVariation open = no_variation(), closed = no_variation();
   open.open_apex_share = 1;
   const auto is_immature = [&](int fdi, double years) {
     PersonDraw person = draw_person(3);
@@ -167,7 +155,7 @@ TEST_F(People, OnlyTheYoungHaveImmatureRootsThirdMolarsLongest) {
 
 TEST_F(People, TheOldAreMoreWorn) {
   const ToothFamilies families = grown();
-  ToothVariation variation = nothing_varies();
+  ToothVariation variation = no_variation();
   variation.wear_mm = 3, variation.wear_share = 0.5;
   const auto height = [&](double age_rank) {
     std::vector<double> heights;
