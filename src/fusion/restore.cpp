@@ -97,11 +97,12 @@ class RootPatch {
     if (triangles_.empty()) throw NoResultError("The predicted root and the crown do not meet.");
   }
 
-  void remove_around(const std::set<int>& vertices) {
-    if (vertices.empty()) return;
-    std::erase_if(triangles_, [&](const Triangle& t) {
-      return std::any_of(t.begin(), t.end(), [&](int v) { return vertices.contains(v); });
-    });
+  /// True if there was a triangle to remove.
+  bool remove_around(const std::set<int>& vertices) {
+    if (vertices.empty()) return false;
+    return std::erase_if(triangles_, [&](const Triangle& t) {
+             return std::any_of(t.begin(), t.end(), [&](int v) { return vertices.contains(v); });
+           }) > 0;
   }
 
   /// Joins a patch that does not touch the crown by two triangles between the nearest border edges of both, and returns
@@ -234,9 +235,7 @@ class RootPatch {
     for (std::size_t i = 1; i < open.size(); ++i)
       if (open[i].first == open[i - 1].first) pinched.insert(open[i].first);
     for (const int v : vertices_with_several_fans()) pinched.insert(v);
-    const std::size_t before = triangles_.size();
-    remove_around(pinched);
-    return triangles_.size() != before;
+    return remove_around(pinched);
   }
 
   /// Vertices of the patch alone whose triangles there form more than one fan while no gap explains it.
@@ -300,6 +299,27 @@ std::set<int> cutting_sites(const TriangleMesh& mesh, std::size_t crown_triangle
   return result;
 }
 
+JoinedTooth restored(const TriangleMesh& crown, const Joining& joining, const TriangleMesh& open,
+                     const FilledMesh& filled) {
+  JoinedTooth tooth;
+  tooth.mesh = filled.mesh;
+  tooth.crown_vertices = static_cast<int>(crown.vertices.size());
+  tooth.crown_triangles = static_cast<int>(crown.triangles.size());
+  tooth.triangles_brought_back = tooth.crown_triangles - joining.crown_triangles_direct;
+  tooth.triangles_filled = static_cast<int>(filled.mesh.triangles.size() - open.triangles.size());
+  tooth.holes_filled = filled.holes;
+  return tooth;
+}
+
+[[noreturn]] void throw_cut_crown(const TriangleMesh& crown, const std::vector<std::pair<int, int>>& cuts) {
+  std::set<std::int64_t> ids;
+  for (const auto& [a, b] : cuts)
+    for (const int t : {a, b})
+      if (static_cast<std::size_t>(t) < crown.triangles.size()) ids.insert(t);
+  throw NoResultError("The root could not be joined to the crown without cutting it (triangles of the crown).",
+                      {ids.begin(), ids.end()}, ElementKind::triangles);
+}
+
 }  // namespace
 
 void require_in_range(const RestoreOptions& options) {
@@ -313,31 +333,19 @@ JoinedTooth restore_crown(const TriangleMesh& crown, const Joining& joining, con
     patch.make_manifold();
     const std::size_t bridging = patch.bridge_to_crown();
     const TriangleMesh open = patch.joined();
-    const FilledMesh filled = fill_holes(open);
     // After the first round what is left of the patch has been tested, and all that cut anything was taken away.
     const std::size_t clear = round == 0 ? crown.triangles.size() : open.triangles.size() - bridging;
-    std::vector<std::pair<int, int>> cuts;
-    if (options.test_cuts) cuts = self_intersecting_triangles(filled.mesh, clear);
-    if (cuts.empty()) {
-      assert(!options.test_cuts || self_intersecting_triangles(filled.mesh).empty());
-      JoinedTooth tooth;
-      tooth.mesh = filled.mesh;
-      tooth.crown_vertices = static_cast<int>(crown.vertices.size());
-      tooth.crown_triangles = static_cast<int>(crown.triangles.size());
-      tooth.triangles_brought_back = tooth.crown_triangles - joining.crown_triangles_direct;
-      tooth.triangles_filled = static_cast<int>(filled.mesh.triangles.size() - open.triangles.size());
-      tooth.holes_filled = filled.holes;
-      return tooth;
-    }
-    if (round >= options.rounds) {
-      std::set<std::int64_t> ids;
-      for (const auto& [a, b] : cuts)
-        for (const int t : {a, b})
-          if (static_cast<std::size_t>(t) < crown.triangles.size()) ids.insert(t);
-      throw NoResultError("The root could not be joined to the crown without cutting it (triangles of the crown).",
-                          {ids.begin(), ids.end()}, ElementKind::triangles);
-    }
-    patch.remove_around(cutting_sites(filled.mesh, crown.triangles.size(), patch.joined_sites(), cuts));
+    FilledMesh filled = fill_holes(open);
+    if (!options.test_cuts) return restored(crown, joining, open, filled);
+    std::vector<std::pair<int, int>> cuts = self_intersecting_triangles(filled.mesh, clear);
+    if (cuts.empty()) return restored(crown, joining, open, filled);
+    if (round < options.rounds &&
+        patch.remove_around(cutting_sites(filled.mesh, crown.triangles.size(), patch.joined_sites(), cuts)))
+      continue;
+    filled = fill_holes_clear(open);
+    cuts = self_intersecting_triangles(filled.mesh, clear);
+    if (!cuts.empty()) throw_cut_crown(crown, cuts);
+    return restored(crown, joining, open, filled);
   }
 }
 

@@ -4,6 +4,7 @@
 // exact predicates.
 #include "mesh/self_intersection.hpp"
 
+#include "mesh/at.hpp"
 #include "mesh/box_tree.hpp"
 #include "mesh/mesh_checks.hpp"
 
@@ -16,6 +17,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <utility>
 
 namespace rhizodont {
 namespace {
@@ -247,25 +250,56 @@ std::vector<Pair> candidate_pairs(const Soup& soup, std::size_t clear) {
   return pairs;
 }
 
-}  // namespace
+Soup soup_of(const std::vector<Point>& vertices, const std::vector<Triangle>& triangles) {
+  Soup soup{{}, triangles, vertices};
+  soup.points.reserve(vertices.size());
+  for (const Point& p : vertices) soup.points.emplace_back(p.x(), p.y(), p.z());
+  return soup;
+}
 
-std::vector<Pair> self_intersecting_triangles(const TriangleMesh& mesh, std::size_t first_clear) {
-  require_valid_indices(mesh);
-  require_finite(mesh.vertices);
-  Soup soup{{}, mesh.triangles, mesh.vertices};
-  for (const Point& p : mesh.vertices) soup.points.emplace_back(p.x(), p.y(), p.z());
-  std::vector<Pair> pairs = candidate_pairs(soup, first_clear);
+std::vector<Pair> those_that_meet(const Soup& soup, std::vector<Pair> pairs) {
   std::vector<char> meet(pairs.size(), 0);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pairs.size(), 1024), [&](const auto& range) {
     for (std::size_t k = range.begin(); k < range.end(); ++k)
-      meet[k] = triangles_meet(soup, mesh.triangles[static_cast<std::size_t>(pairs[k].first)],
-                               mesh.triangles[static_cast<std::size_t>(pairs[k].second)]);
+      meet[k] = triangles_meet(soup, soup.triangles[at(pairs[k].first)], soup.triangles[at(pairs[k].second)]);
   });
   std::size_t kept = 0;
   for (std::size_t k = 0; k < pairs.size(); ++k)
     if (meet[k]) pairs[kept++] = pairs[k];
   pairs.resize(kept);
   return pairs;
+}
+
+}  // namespace
+
+std::vector<Pair> self_intersecting_triangles(const TriangleMesh& mesh, std::size_t first_clear) {
+  require_valid_indices(mesh);
+  require_finite(mesh.vertices);
+  const Soup soup = soup_of(mesh.vertices, mesh.triangles);
+  return those_that_meet(soup, candidate_pairs(soup, first_clear));
+}
+
+std::vector<bool> meeting_mesh(const TriangleMesh& mesh, const std::vector<Triangle>& others) {
+  TriangleMesh all = mesh;
+  all.triangles.insert(all.triangles.end(), others.begin(), others.end());
+  require_valid_indices(all);
+  require_finite(all.vertices);
+  const Soup soup = soup_of(all.vertices, all.triangles);
+  std::vector<int> of_mesh(mesh.triangles.size()), of_others(others.size());
+  std::iota(of_mesh.begin(), of_mesh.end(), 0);
+  std::iota(of_others.begin(), of_others.end(), static_cast<int>(mesh.triangles.size()));
+  const std::vector<int> near = near_the_others(soup, of_mesh, of_others);
+  const BoxTree tree(boxes_of(soup, of_others));
+  std::vector<Pair> pairs;
+  for (const auto& [i, j] : tree.meeting_pairs(BoxTree(boxes_of(soup, near)), [&](int i, int j) {
+         const Triangle &s = soup.triangles[at(of_others[at(i)])], &t = soup.triangles[at(near[at(j)])];
+         return !is_apart_along_a_side(soup, s, t) && !is_apart_along_a_side(soup, t, s);
+       }))
+    pairs.emplace_back(near[at(j)], of_others[at(i)]);
+  std::vector<bool> meeting(others.size(), false);
+  for (const Pair& pair : those_that_meet(soup, std::move(pairs)))
+    meeting[at(pair.second) - mesh.triangles.size()] = true;
+  return meeting;
 }
 
 }  // namespace rhizodont

@@ -19,4 +19,8 @@ namespace rhizodont {
 /// Throws InputError for non-finite vertices or indices out of range.
 std::vector<std::pair<int, int>> self_intersecting_triangles(const TriangleMesh& mesh, std::size_t first_clear = 0);
 
+/// Which of `others`, triangles over the mesh's vertices, meet any triangle of the mesh, in the same sense. A segment
+/// between two vertices is the triangle that has one of them twice. Throws InputError as above.
+std::vector<bool> meeting_mesh(const TriangleMesh& mesh, const std::vector<Triangle>& others);
+
 }  // namespace rhizodont

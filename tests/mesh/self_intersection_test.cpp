@@ -150,6 +150,38 @@ TEST(SelfIntersection, AFlatFanOfManyTrianglesHasNone) {
   EXPECT_TRUE(self_intersecting_triangles(fan).empty());
 }
 
+TEST(MeetingMesh, SaysWhatTheTestOfAllPairsSays) {
+  const TriangleMesh mesh = torus(30, 20);
+  std::mt19937 random(7);
+  std::uniform_int_distribution<int> vertex(0, static_cast<int>(mesh.vertices.size()) - 1);
+  std::vector<Triangle> others;
+  while (others.size() < 60) {
+    const Triangle t{vertex(random), vertex(random), vertex(random)};
+    if (t[0] != t[1] && t[1] != t[2] && t[2] != t[0]) others.push_back(t);
+  }
+  for (std::size_t i = 0; i < 40; ++i) others.push_back({mesh.triangles[i][0], mesh.triangles[i][1], vertex(random)});
+  const std::vector<bool> meeting = meeting_mesh(mesh, others);
+  int count = 0;
+  for (std::size_t i = 0; i < others.size(); ++i) {
+    TriangleMesh with = mesh;
+    with.triangles.push_back(others[i]);
+    EXPECT_EQ(meeting[i], !self_intersecting_triangles(with).empty()) << i;
+    count += meeting[i];
+  }
+  EXPECT_GT(count, 5);
+  EXPECT_LT(count, 95);
+}
+
+TEST(MeetingMesh, ASegmentIsATriangleWithACornerTwice) {
+  TriangleMesh mesh = grid(1);
+  mesh.vertices.insert(mesh.vertices.end(), {{0.6, 0.3, -1}, {0.65, 0.3, 1}, {0.65, 0.3, -0.5}});
+  const auto n = static_cast<std::int32_t>(mesh.vertices.size());
+  EXPECT_EQ(meeting_mesh(mesh, {{n - 3, n - 2, n - 2}, {n - 3, n - 1, n - 1}, {0, 1, 1}}),
+            (std::vector<bool>{true, false, false}));
+  EXPECT_TRUE(meeting_mesh(mesh, {}).empty());
+  EXPECT_THROW(meeting_mesh(mesh, {{0, 1, n}}), InputError);
+}
+
 TEST(SelfIntersection, RefusesBadInput) {
   TriangleMesh mesh = cube();
   mesh.vertices[2].x() = std::numeric_limits<double>::quiet_NaN();
