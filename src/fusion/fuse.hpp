@@ -27,7 +27,7 @@ struct FuseOptions {
   RestoreOptions restore;
   RemeshRootOptions remesh;
   TransitionOptions transition;
-  int attempts = 4;         ///< >= 1: each starts the root farther from the crown's border than the one before
+  int attempts = 2;         ///< >= 1: each starts the root farther from the crown's border than the one before
   int remesh_attempts = 4;  ///< >= 1: each leaves more of the triangles alone where the one before made the tooth cut
                             ///< itself
 };
