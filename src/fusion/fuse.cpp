@@ -108,16 +108,13 @@ Joining join(const Ground& ground, const FuseOptions& options, const SeparationO
   return joining;
 }
 
-/// Restores, remeshes and smooths with one test for self-intersection at the end; nothing if the tooth does not pass.
-std::optional<FusedTooth> finished_at_once(const Ground& ground, const Joining& joining, const FuseOptions& options,
-                                           const TransitionOptions& transition, FuseSeconds& spent) {
+/// Remeshes and smooths with one test for self-intersection at the end; nothing if the tooth does not pass.
+std::optional<FusedTooth> finished_at_once(const Ground& ground, const JoinedTooth& restored,
+                                           const FuseOptions& options, const TransitionOptions& transition,
+                                           FuseSeconds& spent) {
   FusedTooth fused;
+  fused.tooth = restored;
   Stopwatch watch;
-  RestoreOptions restore = options.restore;
-  restore.test_cuts = false;
-  fused.tooth = restore_crown(ground.crown, joining, restore);
-  spent.restoring += watch.restart();
-  if (!diagnose(fused.tooth.mesh).is_closed_solid()) return std::nullopt;
   fused.remeshing = remesh_root(fused.tooth, ground.walk, ground.lengths, {}, 0, options.remesh);
   spent.remeshing += watch.restart();
   TransitionOptions quick = transition;
@@ -129,14 +126,11 @@ std::optional<FusedTooth> finished_at_once(const Ground& ground, const Joining& 
 }
 
 /// The same with a test after each step, so that the step that would break the tooth can be mended or left out.
-FusedTooth finished_step_by_step(const Ground& ground, const Joining& joining, const FuseOptions& options,
+FusedTooth finished_step_by_step(const Ground& ground, JoinedTooth restored, const FuseOptions& options,
                                  const TransitionOptions& transition, FuseSeconds& spent) {
   FusedTooth fused;
+  fused.tooth = std::move(restored);
   Stopwatch watch;
-  fused.tooth = restore_crown(ground.crown, joining, options.restore);
-  spent.restoring += watch.restart();
-  if (!diagnose(fused.tooth.mesh).is_closed_solid())
-    throw NoResultError("Crown and root together do not form a solid of one piece.");
   improve_triangles(ground, options, fused);
   spent.remeshing += watch.restart();
   fused.transition = smooth_transition(fused.tooth, transition);
@@ -151,8 +145,14 @@ FusedTooth attempt(const Ground& ground, const FuseOptions& options, const Separ
   const Joining joining = join(ground, options, separation, spent);
   TransitionOptions transition = options.transition;
   transition.gap = ground.gap;
-  std::optional<FusedTooth> at_once = finished_at_once(ground, joining, options, transition, spent);
-  FusedTooth fused = at_once ? *std::move(at_once) : finished_step_by_step(ground, joining, options, transition, spent);
+  Stopwatch watch;
+  JoinedTooth restored = restore_crown(ground.crown, joining, options.restore);
+  spent.restoring += watch.restart();
+  if (!diagnose(restored.mesh).is_closed_solid())
+    throw NoResultError("Crown and root together do not form a solid of one piece.");
+  std::optional<FusedTooth> at_once = finished_at_once(ground, restored, options, transition, spent);
+  FusedTooth fused =
+      at_once ? *std::move(at_once) : finished_step_by_step(ground, std::move(restored), options, transition, spent);
   fused.root_sites = static_cast<int>(joining.sites.size()) - joining.crown_vertices - joining.steiner_points;
   fused.crown_triangles_direct = joining.crown_triangles_direct;
   fused.steiner_points = joining.steiner_points;

@@ -336,7 +336,6 @@ JoinedTooth restore_crown(const TriangleMesh& crown, const Joining& joining, con
     // After the first round what is left of the patch has been tested, and all that cut anything was taken away.
     const std::size_t clear = round == 0 ? crown.triangles.size() : open.triangles.size() - bridging;
     FilledMesh filled = fill_holes(open);
-    if (!options.test_cuts) return restored(crown, joining, open, filled);
     std::vector<std::pair<int, int>> cuts = self_intersecting_triangles(filled.mesh, clear);
     if (cuts.empty()) return restored(crown, joining, open, filled);
     if (round < options.rounds &&

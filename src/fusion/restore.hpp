@@ -8,8 +8,7 @@
 namespace rhizodont {
 
 struct RestoreOptions {
-  bool test_cuts = true;  ///< look for triangles that cut each other
-  int rounds = 6;         ///< how often root triangles that cut others may be taken back and the gap filled anew, >= 0
+  int rounds = 6;  ///< how often root triangles that cut others may be taken back and the gap filled anew, >= 0
 };
 
 /// Throws UsageError for an option out of its range.

@@ -249,9 +249,6 @@ TEST(Restore, ARootThatCutsTheCrownIsTakenBackThere) {
   EXPECT_EQ(std::count(tooth.mesh.vertices.begin(), tooth.mesh.vertices.end(), *bent), 0);
   EXPECT_EQ(tooth.holes_filled, 1);
   EXPECT_LT(tooth.mesh.vertices.size(), ball.whole.vertices.size());
-
-  impatient.test_cuts = false;  // whoever asks for no test gets the tooth with its cuts
-  EXPECT_FALSE(self_intersecting_triangles(restore_crown(ball.crown, ball.joining, impatient).mesh).empty());
 }
 
 TEST(Restore, MovedOrMirroredTheToothIsTheSame) {
