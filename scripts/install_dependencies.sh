@@ -3,8 +3,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 # Installs from Debian 12's packages what this machine lacks of what is needed: for the program alone, or for everything,
-# that is, tests, benchmarks and training too.
-# usage: install_dependencies.sh [program|all]
+# that is, tests, benchmarks and training too. Beside these there are two groups without which nothing fails: what builds the
+# documents as pages, and what the integrations are tested in.
+# usage: install_dependencies.sh [program|all|documents|integrations]
 set -euo pipefail
 
 packages=(
@@ -21,14 +22,18 @@ case ${1:-all} in
       slurmctld slurmd slurm-client munge
     )
     ;;
+  documents) packages=(python3-sphinx furo python3-myst-parser python3-breathe doxygen python3-numpy) ;;
+  integrations) packages=(blender python3-vtk9 python3-numpy python3-pytest) ;;
   *)
-    echo "usage: install_dependencies.sh [program|all]" >&2
+    echo "usage: install_dependencies.sh [program|all|documents|integrations]" >&2
     exit 2
     ;;
 esac
 
 # Debian's npm does not go with a nodejs from elsewhere, so an npm that is there is taken as it is.
-command -v npm > /dev/null || packages+=(npm)
+case ${1:-all} in
+  program | all) command -v npm > /dev/null || packages+=(npm) ;;
+esac
 
 missing=()
 for package in "${packages[@]}"; do
