@@ -6,7 +6,9 @@ import json
 import pathlib
 import tempfile
 
+import numpy as np
 import vtk
+from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 
 from . import polydata, program
 
@@ -98,15 +100,11 @@ class RhizodontLogic:
         display = node.GetDisplayNode()
         if display is None:
             return
-        colours = vtk.vtkUnsignedCharArray()
+        of_points = node.GetPolyData().GetPointData()
+        as_bytes = np.array([[round(255 * part) for part in colour] for _, colour in SOURCES], dtype=np.uint8)
+        colours = numpy_to_vtk(as_bytes[vtk_to_numpy(of_points.GetArray("source"))], deep=True)
         colours.SetName("source colour")
-        colours.SetNumberOfComponents(3)
-        source = node.GetPolyData().GetPointData().GetArray("source")
-        colours.SetNumberOfTuples(source.GetNumberOfTuples())
-        as_bytes = [tuple(round(255 * part) for part in colour) for _, colour in SOURCES]
-        for i in range(source.GetNumberOfTuples()):
-            colours.SetTuple3(i, *as_bytes[int(source.GetValue(i))])
-        node.GetPolyData().GetPointData().AddArray(colours)
+        of_points.AddArray(colours)
         display.SetActiveScalarName("source colour")
         display.SetScalarVisibility(True)
         display.SetScalarRangeFlag(display.UseDirectMapping)
