@@ -109,6 +109,18 @@ try:
 except addon.Refused as refusal:
     assert "preferences" in str(refusal)
 
+# OBJ keeps its axes, too.
+clear()
+corners = [(0, 0, 0), (8, 0, 0), (0, 7, 0), (0, 0, 6)]
+faces = [(1, 3, 2), (1, 2, 4), (2, 3, 4), (3, 1, 4)]
+lines = ["v %g %g %g" % corner for corner in corners] + ["f %d %d %d" % face for face in faces]
+(folder / "crown_21.obj").write_text("\n".join(lines) + "\n")
+assert bpy.ops.rhizodont.import_crown(filepath=str(folder / "crown_21.obj")) == {"FINISHED"}
+crown = bpy.context.object
+world = [tuple(round(c, 6) for c in crown.matrix_world @ v.co) for v in crown.data.vertices]
+assert sorted(world) == sorted(corners), world
+assert crown.rhizodont.fdi == 21
+
 assert addon.fdi_in_name("crown_36.stl") == 36
 assert addon.fdi_in_name("2021-11-16 b.stl") == 0
 addon.unregister()
