@@ -72,6 +72,39 @@ def test_errors_of_the_module_are_said(run):
     assert (run(DOCS / "python.md") / "tooth_36.ply").stat().st_size > 100_000
 
 
+def rows_of(document, heading):
+    """Cells of the first table below a heading."""
+    part = document.read_text().split(heading, 1)[1]
+    lines = re.search(r"(?:^\|.*\n)+", part, re.M)[0].splitlines()[2:]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in lines]
+
+
+def test_exit_codes_are_those_of_the_library():
+    header = (SOURCE / "include/rhizodont/error.hpp").read_text()
+    values = set(re.findall(r"^  \w+ = (\d),", header, re.M))
+    rows = rows_of(DOCS / "reference/exit_codes.md", "# Exit codes")
+    assert {row[0] for row in rows} == values | {"0"}
+    for name in (row[1].strip("`") for row in rows if row[1]):
+        assert f"class RHIZODONT_EXPORT {name} : public Error" in header, name
+
+
+def properties_of(file):
+    head = file.read_bytes().split(b"end_header")[0].decode().split("element face")[0]
+    return {name: kind for kind, name in re.findall(r"property (\w+) (\w+)", head)}
+
+
+def test_attributes_are_as_documented(run):
+    jaw = run(DOCS / "tutorial.md") / "jaw"
+    documented = {
+        name.strip("` "): kind
+        for row in rows_of(DOCS / "reference/formats.md", "## Attributes of vertices")
+        for name, kind in zip(row[0].split(","), row[1].split(", ") * 3)
+    }
+    for file in ("tooth_36.ply", "arch.ply", "crown_36.ply"):
+        written = {name: kind for name, kind in properties_of(jaw / file).items() if name not in "xyz"}
+        assert written and written.items() <= documented.items(), file
+
+
 def commands_in(document):
     """(command, its options) of each line of code that calls the program, runnable or not."""
     text = document.read_text()
