@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "training_output.hpp"
 
+#include "base/loaded_blas.hpp"
 #include "command_line/output_checks.hpp"
-#include "learning/blas.hpp"
 #include "rhizodont/output_files.hpp"
 
 #include <fmt/chrono.h>
