@@ -4,6 +4,7 @@
 
 #include "base/peak_memory.hpp"
 #include "base/stopwatch.hpp"
+#include "command_line/manual_commands.hpp"
 #include "command_line/number_options.hpp"
 #include "command_line/output_options.hpp"
 #include "command_line/terminal.hpp"
@@ -51,6 +52,7 @@ void describe(const Program& program, CLI::App& app) {
     codes += fmt::format("{}{} {}", codes.empty() ? "" : ", ", code, meaning);
   app.footer("Exit codes: " + codes + ".\n'" + program.name + " COMMAND --help' explains a command.");
   for (const auto add_command : program.commands) add_command(app);
+  add_manual_commands(app, program);
   take_decimal_numbers(app);
 }
 
