@@ -8,7 +8,7 @@
 #include "evaluation/calibration.hpp"
 #include "evaluation/evaluate_cases.hpp"
 #include "evaluation/evaluation_plot.hpp"
-#include "evaluation/template_predictor.hpp"
+#include "evaluation/predictors.hpp"
 #include "models_option.hpp"
 #include "networks/safetensors.hpp"
 #include "report/html_report.hpp"
@@ -35,22 +35,6 @@ struct EvaluateCommand {
   OutputOptions said;
   CompleteOptions options;
 };
-
-NamedPredictor rhizodont_predictor(const EvaluateCommand& command) {
-  const auto models =
-      std::make_shared<const CompletionModels>(CompletionModels::load(models_folder(command.models, command.said)));
-  return {"rhizodont", [models, options = command.options](const TriangleMesh& crown, int fdi) {
-            CompleteOptions of_this = options;
-            of_this.fdi = fdi;
-            return prediction_of(complete_tooth(crown, *models, of_this));
-          }};
-}
-
-NamedPredictor template_predictor(const std::string& folder) {
-  return {"template", [folder](const TriangleMesh& crown, int fdi) {
-            return ToothPrediction{fit_template(crown, load_template_tooth(folder, fdi)), {}, 0, {}};
-          }};
-}
 
 /// Says which tooth is at work.
 EvaluationProgress progress_on(ProgressLine& line, std::size_t cases) {
@@ -183,7 +167,8 @@ void run(const EvaluateCommand& command) {
   }
   const std::vector<EvaluationCase> cases = find_evaluation_cases(command.cases);
   require_safe_places(command, cases);
-  std::vector<NamedPredictor> predictors{rhizodont_predictor(command)};
+  const CompletionModels models = CompletionModels::load(models_folder(command.models, command.said));
+  std::vector<NamedPredictor> predictors{completing_predictor(models, command.options)};
   if (!command.templates.empty()) predictors.push_back(template_predictor(command.templates));
   ProgressLine line(command.said);
   const Evaluation evaluation = evaluate_cases(cases, predictors, {}, progress_on(line, cases.size()));

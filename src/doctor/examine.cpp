@@ -6,11 +6,11 @@
 #include "base/stopwatch.hpp"
 #include "doctor/shipped_models.hpp"
 #include "networks/safetensors.hpp"
-#include "report/html_report.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/hash.hpp"
 #include "rhizodont/io.hpp"
+#include "rhizodont/report_page.hpp"
 #include "rhizodont/version.hpp"
 
 #include <fmt/format.h>
@@ -52,15 +52,6 @@ ModelFinding look_at(const std::filesystem::path& folder, const ShippedModel& sh
     model.fault = error.what();
   }
   return model;
-}
-
-bool pages_are_built_in() {
-  try {
-    require_report_page();
-    return true;
-  } catch (const UsageError&) {
-    return false;
-  }
 }
 
 void judge_models(Examination& found) {
@@ -149,7 +140,7 @@ Examination examine(const std::filesystem::path& models_folder) {
   found.machine = this_machine();
   found.libraries = library_versions();
   found.blas = loaded_blas();
-  found.has_pages = pages_are_built_in();
+  found.has_pages = has_report_pages();
   found.models_folder = models_folder;
   for (const ShippedModel& shipped : shipped_models()) found.models.push_back(look_at(models_folder, shipped));
   judge_models(found);

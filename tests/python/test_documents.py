@@ -13,7 +13,7 @@ def test_blocks_of_the_document_run(tmp_path, monkeypatch, capsys):
     (tmp_path / "samples").symlink_to(SOURCE / "samples")
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"^```python\n(.*?)^```", (SOURCE / "docs" / "python.md").read_text(), re.S | re.M)
-    assert len(blocks) == 4
+    assert len(blocks) == 5
     names = {}
     for block in blocks:
         exec(compile(block, "docs/python.md", "exec"), names)
