@@ -49,6 +49,12 @@ def all_paths(path=()):
 PATHS = list(all_paths())
 
 
+class Commands(unittest.TestCase):
+    def test_all_can_be_quiet_and_verbose(self):
+        for path in PATHS[1:]:
+            self.assertLessEqual({'--quiet', '--verbose'}, options_in(help_of(path)), path)
+
+
 class Manual(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
