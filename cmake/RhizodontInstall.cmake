@@ -46,3 +46,9 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfigVers
   COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont COMPONENT development)
+
+# What software centres and menus show.
+set(identity org.rhizodont.Rhizodont)
+install(FILES deploy/${identity}.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT program)
+install(FILES deploy/${identity}.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT program)
+install(FILES deploy/${identity}.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT program)
