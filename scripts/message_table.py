@@ -19,9 +19,9 @@ CODES = [
     (0, 'done', 'all that was asked for is there'),
     (2, 'wrong usage', 'the call itself is off; nothing was read or written. Mend the command'),
     (3, 'unusable input', 'a file or the mesh in it cannot be used. The sentence names the defect, its ids the places; '
-     '`--repair` mends many, `--report` lists all ids'),
+     '`--repair` mends many, `--report` lists all ids. `doctor` ends so where models are missing or damaged'),
     (4, 'no result', 'the input was understood, but nothing that keeps the promises came of it; nothing was written. `check` '
-     'ends so where a promise is not kept, `evaluate` where a tooth has no figures'),
+     'ends so where a promise is not kept, `evaluate` where a tooth has no figures, `doctor` where its self test failed'),
     (5, 'fault of the program', 'please report it, with the command'),
     (6, 'some of several', 'of several teeth or cases some have no result; the reason stands beside each'),
     (7, 'unwritable', 'a result cannot be written: no room, no right, no such place. What was there before is there still'),
