@@ -26,11 +26,13 @@ target_compile_features(rhizodont_library INTERFACE cxx_std_20)
 
 install(TARGETS rhizodont_library EXPORT RhizodontTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
-install(TARGETS rhizodont RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program)
+set(RHIZODONT_ZSH_DIR ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions CACHE STRING
+    "Where zsh looks for completions, below the prefix: Debian's place for packages; site-functions elsewhere")
+rhizodont_install_program(rhizodont program)
 if(RHIZODONT_TRAINING)
   # The folder of the BLAS that torch needs, see src/learning/CMakeLists.txt.
   set_target_properties(rhizodont-train PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
-  install(TARGETS rhizodont-train RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT training)
+  rhizodont_install_program(rhizodont-train training)
 endif()
 install(DIRECTORY include/rhizodont ${CMAKE_CURRENT_BINARY_DIR}/include/rhizodont
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT development FILES_MATCHING PATTERN "*.hpp")
@@ -44,3 +46,9 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfigVers
   COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/RhizodontConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Rhizodont COMPONENT development)
+
+# What software centres and menus show.
+set(identity org.rhizodont.Rhizodont)
+install(FILES deploy/${identity}.metainfo.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/metainfo COMPONENT program)
+install(FILES deploy/${identity}.desktop DESTINATION ${CMAKE_INSTALL_DATADIR}/applications COMPONENT program)
+install(FILES deploy/${identity}.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps COMPONENT program)

@@ -25,7 +25,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "rhizodont-models ${same}")
 # The first line of each description is the project's.
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
-    "The program: complete, arch, segment, batch, check, measure, render, evaluate and synth; and a local page\n (rhizodont serve). ${notice}")
+    "The program: complete, arch, segment, batch, check, measure, render, evaluate, synth and doctor; and a local\n page (rhizodont serve). ${notice}")
 
 set(CPACK_DEBIAN_MODELS_PACKAGE_NAME rhizodont-models)
 set(CPACK_DEBIAN_MODELS_PACKAGE_SECTION science)

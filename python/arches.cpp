@@ -6,6 +6,7 @@
 #include "rhizodont/arch.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/json.hpp"
+#include "rhizodont/report_page.hpp"
 #include "rhizodont/segment.hpp"
 
 #include <pybind11/functional.h>
@@ -73,49 +74,55 @@ py::dict clearance_of(const ToothClearance& pair) {
   return result;
 }
 
-/// A tooth as Python takes it over: its arrays move, nothing is copied.
-py::dict taken_tooth(ToothOfArch& tooth) {
-  py::dict result;
-  result["fdi"] = tooth.fdi;
-  result["crown"] = arrays_of(std::move(tooth.crown));
-  result["scan_vertices"] = array_of<int>(std::move(tooth.scan_vertices));
-  result["clearance"] = array_of<double>(std::move(tooth.clearance));
-  result["refusal"] = tooth.refusal;
-  result["tooth"] = tooth.tooth ? py::cast(*std::move(tooth.tooth)) : py::object(py::none());
-  return result;
+/// An arch with what it was made of, as Python keeps it: its arrays are views of this memory.
+struct KeptArch {
+  CompletedArch arch;
+  LabelledScan scan;
+  ArchOptions options;
+};
+
+py::list teeth_of(const py::object& self) {
+  auto& kept = self.cast<KeptArch&>();
+  py::list teeth;
+  for (ToothOfArch& tooth : kept.arch.teeth) {
+    py::dict one;
+    one["fdi"] = tooth.fdi;
+    one["crown"] = views_of(tooth.crown, self);
+    one["scan_vertices"] = view_of<int>(tooth.scan_vertices, 1, self);
+    one["clearance"] = view_of<double>(tooth.clearance, 1, self);
+    one["refusal"] = tooth.refusal;
+    one["tooth"] = tooth.tooth ? py::cast(&*tooth.tooth, py::return_value_policy::reference_internal, self)
+                               : py::object(py::none());
+    teeth.append(one);
+  }
+  return teeth;
 }
 
 /// @param tooth  options of every tooth as JSON
-py::dict arch(const VertexArray& vertices, const TriangleArray& triangles, const LabelArray& labels,
+KeptArch arch(const VertexArray& vertices, const TriangleArray& triangles, const LabelArray& labels,
               const CompletionModels& models, const std::string& tooth, const std::map<int, double>& root_lengths,
               bool resolve_collisions, double clearance_mm, const Progress& progress) {
-  LabelledScan scan{mesh_of(vertices, triangles), {}};
+  KeptArch kept;
+  kept.scan.mesh = mesh_of(vertices, triangles);
   if (labels.ndim() != 1) throw InputError("Labels must be an array of one number per vertex.");
-  scan.fdi.assign(labels.data(), labels.data() + labels.size());
-  ArchOptions options;
-  options.tooth = options_from_json(tooth);
-  options.root_lengths = root_lengths;
-  options.resolve_collisions = resolve_collisions;
-  options.clearance_mm = clearance_mm;
+  kept.scan.fdi.assign(labels.data(), labels.data() + labels.size());
+  kept.options.tooth = options_from_json(tooth);
+  kept.options.root_lengths = root_lengths;
+  kept.options.resolve_collisions = resolve_collisions;
+  kept.options.clearance_mm = clearance_mm;
   const ArchProgress callback = [&progress](int done, int teeth, int fdi) {
     const py::gil_scoped_acquire lock;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (progress) progress(done, teeth, fdi);
   };
-  CompletedArch done;
-  {
-    const py::gil_scoped_release release;
-    done = complete_arch(scan, models, options, callback);
-  }
-  py::list teeth, clearances;
-  for (ToothOfArch& one : done.teeth) teeth.append(taken_tooth(one));
-  for (const ToothClearance& pair : done.clearances) clearances.append(clearance_of(pair));
-  py::dict result;
-  result["teeth"] = teeth;
-  result["clearances"] = clearances;
-  result["gum"] = arrays_of(std::move(done.gum));
-  result["notes"] = done.notes;
-  return result;
+  const py::gil_scoped_release release;
+  kept.arch = complete_arch(kept.scan, models, kept.options, callback);
+  return kept;
+}
+
+std::string page_of_arch(const KeptArch& kept) {
+  const py::gil_scoped_release release;
+  return arch_page(kept.arch, kept.scan, kept.options);
 }
 
 }  // namespace
@@ -125,6 +132,18 @@ void bind_arches(py::module_& module) {
       .def_static(
           "load", [](const std::filesystem::path& folder) { return SegmentModels::load(folder); }, py::arg("folder"),
           py::call_guard<py::gil_scoped_release>());
+  py::class_<KeptArch>(module, "CompletedArch")
+      .def_property_readonly("teeth", &teeth_of)
+      .def_property_readonly("clearances",
+                             [](const KeptArch& kept) {
+                               py::list all;
+                               for (const ToothClearance& pair : kept.arch.clearances) all.append(clearance_of(pair));
+                               return all;
+                             })
+      .def_property_readonly(
+          "gum", [](const py::object& self) { return views_of(self.cast<const KeptArch&>().arch.gum, self); })
+      .def_property_readonly("notes", [](const KeptArch& kept) { return kept.arch.notes; })
+      .def("page", &page_of_arch);
   module.def("arch_tooth_options", [] { return options_to_json(ArchOptions::skirt_and_repair()); });
   module.def("arch", &arch, py::arg("vertices"), py::arg("triangles"), py::arg("labels"), py::arg("models"),
              py::arg("tooth"), py::arg("root_lengths"), py::arg("resolve_collisions"), py::arg("clearance_mm"),

@@ -33,6 +33,22 @@ py::array_t<Number> array_of(std::vector<Element> values) {
   return py::array_t<Number>(std::vector<py::ssize_t>{rows, width}, first, keeper);
 }
 
+/// A read-only array over memory that belongs to `owner`.
+template <class Number, class Element>
+py::array view_of(const std::vector<Element>& values, py::ssize_t width, const py::object& owner) {
+  const auto rows = static_cast<py::ssize_t>(values.size());
+  std::vector<py::ssize_t> shape{rows};
+  if (width > 1) shape.push_back(width);
+  py::array_t<Number> view(shape, reinterpret_cast<const Number*>(values.data()), owner);
+  view.attr("flags").attr("writeable") = false;
+  return view;
+}
+
+/// (vertices, triangles) of a mesh that belongs to `owner`, read-only.
+inline py::tuple views_of(const TriangleMesh& mesh, const py::object& owner) {
+  return py::make_tuple(view_of<double>(mesh.vertices, 3, owner), view_of<std::int32_t>(mesh.triangles, 3, owner));
+}
+
 /// A mesh of two arrays, n x 3 and m x 3. Throws InputError for arrays of another shape.
 TriangleMesh mesh_of(const VertexArray& vertices, const TriangleArray& triangles);
 

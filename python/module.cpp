@@ -7,11 +7,13 @@
 
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/evaluate.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/json.hpp"
 #include "rhizodont/measure.hpp"
 #include "rhizodont/version.hpp"
 
+#include <pybind11/functional.h>
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
@@ -113,6 +115,29 @@ std::string measure_json(const VertexArray& vertices, const TriangleArray& trian
   return measures_to_json(measure(mesh));
 }
 
+/// Progress is called with Python's lock; what it raises ends the work, and so does Ctrl-C.
+std::string evaluate(const std::filesystem::path& cases, const CompletionModels& models, const std::string& options,
+                     const std::filesystem::path& templates,
+                     const std::function<void(int, int, int, std::string)>& progress) {
+  const EvaluateOptions taken{options_from_json(options), templates};
+  const EvaluateProgress callback = [&progress](int fdi, int place, int all, const std::string& predictor) {
+    const py::gil_scoped_acquire lock;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (progress) progress(fdi, place, all, predictor);
+  };
+  const py::gil_scoped_release release;
+  return evaluate_to_json(cases, models, taken, callback);
+}
+
+std::string root_figures(const VertexArray& crown_vertices, const TriangleArray& crown_triangles,
+                         const VertexArray& true_vertices, const TriangleArray& true_triangles,
+                         const VertexArray& predicted_vertices, const TriangleArray& predicted_triangles) {
+  const TriangleMesh crown = mesh_of(crown_vertices, crown_triangles), truth = mesh_of(true_vertices, true_triangles),
+                     predicted = mesh_of(predicted_vertices, predicted_triangles);
+  const py::gil_scoped_release release;
+  return root_figures_to_json(crown, truth, predicted);
+}
+
 }  // namespace
 
 TriangleMesh mesh_of(const VertexArray& vertices, const TriangleArray& triangles) {
@@ -142,4 +167,9 @@ PYBIND11_MODULE(_core, module) {
   module.def("measure", &measure_json, py::arg("vertices"), py::arg("triangles"));
   bind_teeth(module);
   bind_arches(module);
+  module.def("evaluate", &evaluate, py::arg("cases"), py::arg("models"), py::arg("options"), py::arg("templates"),
+             py::arg("progress"));
+  module.def("root_figures", &root_figures, py::arg("crown_vertices"), py::arg("crown_triangles"),
+             py::arg("true_vertices"), py::arg("true_triangles"), py::arg("predicted_vertices"),
+             py::arg("predicted_triangles"));
 }

@@ -7,6 +7,7 @@
 #include "rhizodont/json.hpp"
 #include "rhizodont/models.hpp"
 #include "rhizodont/report.hpp"
+#include "rhizodont/report_page.hpp"
 #include "rhizodont/tooth_file.hpp"
 
 #include <pybind11/functional.h>
@@ -77,15 +78,10 @@ std::string check_tooth(const VertexArray& vertices, const TriangleArray& triang
   return check_to_json(check(crown, tooth.mesh, options));
 }
 
-/// A read-only array over memory that belongs to `owner`.
-template <class Number, class Element>
-py::array view_of(const std::vector<Element>& values, py::ssize_t width, const py::object& owner) {
-  const auto rows = static_cast<py::ssize_t>(values.size());
-  std::vector<py::ssize_t> shape{rows};
-  if (width > 1) shape.push_back(width);
-  py::array_t<Number> view(shape, reinterpret_cast<const Number*>(values.data()), owner);
-  view.attr("flags").attr("writeable") = false;
-  return view;
+std::string page_of_tooth(const CompletedTooth& tooth, const VertexArray& vertices, const TriangleArray& triangles) {
+  const TriangleMesh crown = mesh_of(vertices, triangles);
+  const py::gil_scoped_release release;
+  return tooth_page(tooth, crown);
 }
 
 void save_tooth(const CompletedTooth& tooth, const std::filesystem::path& path) {
@@ -143,6 +139,8 @@ void bind_teeth(py::module_& module) {
       .def_property_readonly("options",
                              [](const PreparedTooth& prepared) { return options_to_json(prepared.options()); });
 
+  module.def("has_report_pages", &has_report_pages);
+  module.def("tooth_page", &page_of_tooth, py::arg("tooth"), py::arg("vertices"), py::arg("triangles"));
   module.def("check_tooth", &check_tooth, py::arg("vertices"), py::arg("triangles"), py::arg("tooth"));
   module.def("complete", &complete, py::arg("vertices"), py::arg("triangles"), py::arg("models"), py::arg("options"),
              py::arg("progress"));

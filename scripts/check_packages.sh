@@ -23,6 +23,9 @@ if command -v lintian > /dev/null; then
   lintian --fail-on error --suppress-tags no-changelog "$packages"/*.deb > /dev/null
 fi
 
+if command -v appstreamcli > /dev/null; then
+  appstreamcli validate --no-net deploy/*.metainfo.xml > "$packages/appstream.log" || { cat "$packages/appstream.log"; exit 1; }
+fi
 python=$(find "$packages" -maxdepth 1 -name 'python3-rhizodont_*.deb')
 mkdir -p "$root"
 if [ $fresh = yes ]; then
@@ -39,6 +42,13 @@ else
   run=(env -u RHIZODONT_MODELS "PYTHONPATH=$root/usr/lib/python3/dist-packages" PYTHONDONTWRITEBYTECODE=1)
   place=$root crown=samples/crown_11.stl
 fi
+for file in man/man1/rhizodont.1.gz man/man1/rhizodont-batch-status.1.gz bash-completion/completions/rhizodont zsh/vendor-completions/_rhizodont \
+            fish/vendor_completions.d/rhizodont.fish metainfo/org.rhizodont.Rhizodont.metainfo.xml applications/org.rhizodont.Rhizodont.desktop \
+            icons/hicolor/scalable/apps/org.rhizodont.Rhizodont.svg; do
+  # a minimal Debian leaves out manuals
+  [ -s "$root/usr/share/$file" ] || { [ $fresh = yes ] && [[ $file == man/* ]]; } || { echo "the packages lack $file"; exit 1; }
+done
+"${run[@]}" "$place/usr/bin/rhizodont" doctor --quiet
 "${run[@]}" "$place/usr/bin/rhizodont" complete "$crown" --fdi 11 --e 1 -o "$place/tooth.ply" --overwrite
 "${run[@]}" "$place/usr/bin/rhizodont" check "$crown" "$place/tooth.ply" | tail -1
 if [ -n "$python" ]; then

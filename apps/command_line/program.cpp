@@ -2,7 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/program.hpp"
 
+#include "base/peak_memory.hpp"
+#include "base/stopwatch.hpp"
+#include "command_line/manual_commands.hpp"
 #include "command_line/number_options.hpp"
+#include "command_line/output_options.hpp"
+#include "command_line/terminal.hpp"
 #include "command_line/words.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/version.hpp"
@@ -24,7 +29,7 @@ namespace rhizodont::command_line {
 namespace {
 
 int report(const Program& program, ErrorCode code, const std::string& sentence) {
-  fmt::print(stderr, "{}: {}\n", program.name, sentence);
+  print_error(program.name, sentence);
   return static_cast<int>(code);
 }
 
@@ -42,12 +47,12 @@ int finish_printing(const Program& program, int code) {
 void describe(const Program& program, CLI::App& app) {
   app.require_subcommand(1);
   app.set_version_flag("--version", fmt::format("{} {}", program.name, RHIZODONT_VERSION));
-  app.footer(
-      "Exit codes: 0 done, 2 wrong usage, 3 unusable input, 4 no result that keeps the promises, 5 fault of the "
-      "program, 6 some teeth of several have no result, 7 results cannot be written.\n"
-      "'" +
-      program.name + " COMMAND --help' explains a command.");
+  std::string codes;
+  for (const auto& [code, meaning] : exit_codes())
+    codes += fmt::format("{}{} {}", codes.empty() ? "" : ", ", code, meaning);
+  app.footer("Exit codes: " + codes + ".\n'" + program.name + " COMMAND --help' explains a command.");
   for (const auto add_command : program.commands) add_command(app);
+  add_manual_commands(app, program);
   take_decimal_numbers(app);
 }
 
@@ -70,6 +75,11 @@ std::optional<std::string> say_unknown_command(const Program& program, const CLI
   return sentence + fmt::format(": there are {}", fmt::join(names, ", "));
 }
 
+/// For those who asked for details.
+void say_cost(const CLI::App& app, double seconds) {
+  if (is_verbose(app)) fmt::print(stderr, "{:.2f} s, at most {:.0f} MB\n", seconds, peak_memory_mb());
+}
+
 /// A line about a call that was not understood, with the option that was probably meant.
 std::string say_misunderstood(const CLI::App& app, const CLI::ParseError& error) {
   for (const CLI::App* command : app.get_subcommands()) {
@@ -86,7 +96,18 @@ std::string say_misunderstood(const CLI::App& app, const CLI::ParseError& error)
 
 }  // namespace
 
+std::vector<std::pair<int, std::string>> exit_codes() {
+  return {{0, "done"},
+          {2, "wrong usage"},
+          {3, "unusable input"},
+          {4, "no result that keeps the promises"},
+          {5, "fault of the program"},
+          {6, "some teeth of several have no result"},
+          {7, "results cannot be written"}};
+}
+
 int run_program(const Program& program, int argc, char** argv) {
+  const Stopwatch watch;
   try {
     CLI::App app{program.purpose, program.name};
     describe(program, app);
@@ -96,12 +117,14 @@ int run_program(const Program& program, int argc, char** argv) {
     try {
       app.parse(argc, argv);
     } catch (const CLI::RuntimeError& done) {
+      say_cost(app, watch.seconds());
       return finish_printing(program, done.get_exit_code());
     } catch (const CLI::Success& help) {
       return finish_printing(program, app.exit(help));
     } catch (const CLI::ParseError& error) {
       return report(program, ErrorCode::wrong_usage, say_misunderstood(app, error));
     }
+    say_cost(app, watch.seconds());
     return finish_printing(program, 0);
   } catch (const Error& error) {
     return report(program, error.code(), error_line(error));

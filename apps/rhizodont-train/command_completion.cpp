@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/output_options.hpp"
 #include "commands.hpp"
 #include "learning/train_completion.hpp"
 #include "rhizodont/error.hpp"
@@ -23,6 +24,7 @@ struct CompletionCommand {
   bool overwrite = false;
   CompletionSampleOptions samples;
   CompletionTrainingOptions options;
+  OutputOptions said;
 };
 
 void train(const CompletionCommand& command) {
@@ -31,11 +33,11 @@ void train(const CompletionCommand& command) {
   population.population = command.population;
   const ToothFamilies families = load_tooth_families(command.data, population);
   CompletionTrainingOptions options = command.options;
-  options.loop.progress = print_progress;
+  options.loop.progress = progress_of(command.said);
   const CompletionTrainingResult result = train_completion(
       [&](std::uint64_t index) { return make_completion_sample(families, index, command.samples).pair; }, options);
-  fmt::print("{} samples, best root Chamfer distance on held-out teeth {:.3f} mm; checkpoint in {}\n", result.samples,
-             result.best_root_chamfer, options.loop.folder.string());
+  command.said.tell(fmt::format("{} samples, best root Chamfer distance on held-out teeth {:.3f} mm; checkpoint in {}",
+                                result.samples, result.best_root_chamfer, options.loop.folder.string()));
 }
 
 /// The network's size; the rest of its shape follows or stays as it is.
@@ -91,10 +93,11 @@ void add_completion_command(CLI::App& app) {
   auto* export_to = train_app->add_option(
       "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");
   train_app->add_flag("--overwrite", command->overwrite, "The export may replace an older model card");
+  command->said.add_to(*train_app);
   train_app->callback([command, data, export_to] {
     if (*export_to) {
-      export_weights(
-          {command->options.loop.folder, command->export_to, command->overwrite, export_completion, completion_card});
+      export_weights({command->options.loop.folder, command->export_to, command->overwrite, export_completion,
+                      completion_card, command->said});
     } else if (*data) {
       train(*command);
     } else {

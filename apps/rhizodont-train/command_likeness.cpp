@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/output_checks.hpp"
+#include "command_line/output_options.hpp"
 #include "commands.hpp"
 #include "learning/train_classifier.hpp"
 #include "networks/safetensors.hpp"
@@ -23,14 +24,15 @@ struct LikenessCommand {
   int held_out = 150;
   bool bounds_only = false;
   ClassifierTrainingOptions options;
+  OutputOptions said;
 };
 
 TensorFile train(const LikenessCommand& command, const ToothFamilies& families) {
   const LabelledPanoramas panoramas =
       make_likeness_panoramas(families, load_model_crowns(command.data / "crowns" / "ssm"), command.teeth);
-  fmt::print("{} panoramas\n", panoramas.labels.size());
+  command.said.tell(fmt::format("{} panoramas", panoramas.labels.size()));
   ClassifierTrainingOptions options = command.options;
-  options.progress = print_progress;
+  options.progress = progress_of(command.said);
   TensorFile weights = train_classifier(panoramas, options);
   weights.metadata["content"] = "A network that tells which tooth a crown is (src/completion/tooth_classifier.hpp)";
   weights.metadata["training.panoramas"] = std::to_string(panoramas.labels.size());
@@ -54,8 +56,8 @@ void run(const LikenessCommand& command) {
   const LikenessBounds bounds = draw_likeness_bounds(families, ToothClassifier(weights), command.held_out);
   note_bounds(bounds, weights);
   write_safetensors(command.weights, weights);
-  fmt::print("{}: bounds {:.2f}, {:.2f}, {:.2f}\n", command.weights.string(), bounds.other_tooth, bounds.unlike,
-             bounds.refused);
+  command.said.tell(fmt::format("{}: bounds {:.2f}, {:.2f}, {:.2f}", command.weights.string(), bounds.other_tooth,
+                                bounds.unlike, bounds.refused));
 }
 
 }  // namespace
@@ -76,6 +78,7 @@ void add_likeness_command(CLI::App& app) {
       ->capture_default_str();
   likeness_app->add_flag("--bounds-only", command->bounds_only,
                          "Train nothing: find the bounds of the file's weights anew");
+  command->said.add_to(*likeness_app);
   likeness_app->callback([command] { run(*command); });
 }
 

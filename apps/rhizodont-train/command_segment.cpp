@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/output_options.hpp"
 #include "commands.hpp"
 #include "learning/train_scan.hpp"
 #include "rhizodont/error.hpp"
@@ -23,6 +24,7 @@ struct SegmentCommand {
   bool make_held_out = false;
   ArchDrawOptions draw;
   ScanTrainingOptions options;
+  OutputOptions said;
 };
 
 /// Scans are made ahead of the training, by as many processes as there is room for.
@@ -32,9 +34,9 @@ void make_samples(const SegmentCommand& command) {
     const std::uint64_t seed = i + (command.make_held_out ? first_validation_sample : 0);
     try {
       const LabelledCloud scan = kept_arch_cloud(family, seed, command.cache, command.draw);
-      fmt::print("{}: {} points\n", seed, scan.cloud.size());
+      command.said.tell(fmt::format("{}: {} points", seed, scan.cloud.size()));
     } catch (const NoResultError& error) {
-      fmt::print("{}: {}\n", seed, error.what());
+      command.said.tell(fmt::format("{}: {}", seed, error.what()));
     }
     std::fflush(stdout);
   }
@@ -55,10 +57,10 @@ void train(SegmentCommand command) {
   prepare_for_training();
   const ArchFamily family = load_arch_family(command.data);
   const CloudProvider provider = [&](std::uint64_t index) { return any_cloud(family, index, command.cache); };
-  command.options.loop.progress = print_progress;
+  command.options.loop.progress = progress_of(command.said);
   const ScanTrainingResult result = train_scan(provider, command.options);
-  fmt::print("{} samples; best on held-out scans: {:.4f} of points right; checkpoint in {}\n", result.samples,
-             result.best.accuracy, command.options.loop.folder.string());
+  command.said.tell(fmt::format("{} samples; best on held-out scans: {:.4f} of points right; checkpoint in {}",
+                                result.samples, result.best.accuracy, command.options.loop.folder.string()));
 }
 
 void add_training_options(CLI::App& app, ScanTrainingOptions& options) {
@@ -94,10 +96,12 @@ void add_segment_command(CLI::App& app) {
   auto* export_to = train_app->add_option(
       "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");
   train_app->add_flag("--overwrite", command->overwrite, "The export may replace an older model card");
+  command->said.add_to(*train_app);
   train_app->callback([command, data, export_to] {
     if (*export_to) {
       if (command->options.loop.folder.empty()) throw UsageError("An export needs the training's folder (--out).");
-      export_weights({command->options.loop.folder, command->export_to, command->overwrite, export_scan, segment_card});
+      export_weights({command->options.loop.folder, command->export_to, command->overwrite, export_scan, segment_card,
+                      command->said});
       return;
     }
     if (!*data) throw UsageError("Training needs the folder with crowns (--data).");

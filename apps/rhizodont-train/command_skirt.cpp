@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/output_options.hpp"
 #include "commands.hpp"
 #include "learning/train_surface.hpp"
 #include "rhizodont/error.hpp"
@@ -23,6 +24,7 @@ struct SkirtCommand {
   std::string inputs = "all";
   SkirtSampleOptions samples;
   SurfaceTrainingOptions options;
+  OutputOptions said;
 };
 
 /// The parts of the paper's comparison.
@@ -44,15 +46,17 @@ void train(SkirtCommand command) {
     const auto count = static_cast<std::uint64_t>(command.options.loop.validation_samples);
     // Beyond those by which the best weights were chosen.
     const SurfaceFigures f = measure_surface(network, provider, first_validation_sample + 100'000, count);
-    fmt::print("{} crowns, {} vertices: accuracy {:.4f}, intersection over union of the skirt {:.4f}\n", count,
-               f.vertices, f.accuracy, f.intersection);
+    command.said.tell(
+        fmt::format("{} crowns, {} vertices: accuracy {:.4f}, intersection over union of the skirt {:.4f}", count,
+                    f.vertices, f.accuracy, f.intersection));
     return;
   }
   choose_inputs(command.options.shape, command.inputs);
-  command.options.loop.progress = print_progress;
+  command.options.loop.progress = progress_of(command.said);
   const SurfaceTrainingResult result = train_surface(provider, command.options);
-  fmt::print("{} samples; best on held-out crowns: intersection over union of the skirt {:.4f}; checkpoint in {}\n",
-             result.samples, result.best.intersection, command.options.loop.folder.string());
+  command.said.tell(
+      fmt::format("{} samples; best on held-out crowns: intersection over union of the skirt {:.4f}; checkpoint in {}",
+                  result.samples, result.best.intersection, command.options.loop.folder.string()));
 }
 
 void add_training_options(CLI::App& app, SurfaceTrainingOptions& options) {
@@ -94,12 +98,13 @@ void add_skirt_command(CLI::App& app) {
   auto* export_to = train_app->add_option(
       "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");
   train_app->add_flag("--overwrite", command->overwrite, "The export may replace an older model card");
+  command->said.add_to(*train_app);
   train_app->callback([command, data, export_to] {
     if (command->measure.empty() && command->options.loop.folder.empty())
       throw UsageError("Training needs a folder for its checkpoints (--out).");
     if (*export_to) {
-      export_weights(
-          {command->options.loop.folder, command->export_to, command->overwrite, export_surface, skirt_card});
+      export_weights({command->options.loop.folder, command->export_to, command->overwrite, export_surface, skirt_card,
+                      command->said});
     } else if (*data) {
       train(*command);
     } else {

@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "training_output.hpp"
 
+#include "base/loaded_blas.hpp"
 #include "command_line/output_checks.hpp"
-#include "learning/blas.hpp"
+#include "command_line/terminal.hpp"
 #include "rhizodont/output_files.hpp"
 
 #include <fmt/chrono.h>
@@ -45,16 +46,17 @@ std::string progress_text(const TrainingProgress& p) {
 }  // namespace
 
 void prepare_for_training() {
-  if (const std::string warning = blas_warning(); !warning.empty())
-    fmt::print(stderr, "rhizodont-train: {}\n", warning);
+  if (const std::string warning = blas_warning(); !warning.empty()) print_error("rhizodont-train", warning);
   // Tensors of some megabytes come and go all the time: without this, each one is new pages from the kernel.
   mallopt(M_MMAP_THRESHOLD, 1 << 30);
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
 }
 
-void print_progress(const TrainingProgress& progress) {
-  fmt::print("{:%F %T} {}\n", fmt::localtime(std::time(nullptr)), progress_text(progress));
-  std::fflush(stdout);
+std::function<void(const TrainingProgress&)> progress_of(const OutputOptions& said) {
+  return [said](const TrainingProgress& progress) {
+    said.tell(fmt::format("{:%F %T} {}", fmt::localtime(std::time(nullptr)), progress_text(progress)));
+    std::fflush(stdout);
+  };
 }
 
 void export_weights(const WeightExport& what) {
@@ -67,7 +69,8 @@ void export_weights(const WeightExport& what) {
   const OutputFile weights{what.weights, safetensors_bytes(exported)};
   const WeightFile described{what.weights.filename().string(), weights.bytes.size(), exported.metadata};
   write_output_files({weights, {card, what.card(described)}});
-  fmt::print("{}: {} samples trained\n", what.weights.string(), exported.metadata.at("training.samples"));
+  what.said.tell(
+      fmt::format("{}: {} samples trained", what.weights.string(), exported.metadata.at("training.samples")));
 }
 
 }  // namespace rhizodont::command_line

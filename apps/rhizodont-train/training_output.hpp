@@ -6,6 +6,7 @@
 #include <functional>
 #include <string>
 
+#include "command_line/output_options.hpp"
 #include "learning/training_options.hpp"
 #include "networks/safetensors.hpp"
 #include "training/model_card.hpp"
@@ -15,8 +16,8 @@ namespace rhizodont::command_line {
 /// Tunes this process for training and warns of a slow BLAS on standard error.
 void prepare_for_training();
 
-/// Prints a report with the time.
-void print_progress(const TrainingProgress& progress);
+/// Prints each report with the time, unless nothing is to be said.
+std::function<void(const TrainingProgress&)> progress_of(const OutputOptions& said);
 
 /// What differs between the networks whose weights are exported.
 struct WeightExport {
@@ -25,6 +26,7 @@ struct WeightExport {
   bool overwrite = false;  ///< an older card may be replaced
   std::function<TensorFile(const std::filesystem::path& folder, const std::map<std::string, std::string>& notes)> read;
   std::function<std::string(const WeightFile&)> card;
+  OutputOptions said;
 };
 
 /// Writes a folder's best weights and, beside them, the model card. Throws as require_safe_export and the functions.

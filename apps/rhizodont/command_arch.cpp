@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/number_options.hpp"
 #include "command_line/output_checks.hpp"
+#include "command_line/output_options.hpp"
+#include "command_line/progress_line.hpp"
 #include "commands.hpp"
+#include "models_option.hpp"
 #include "report/arch_files.hpp"
 #include "report/html_report.hpp"
 #include "report/scan_input.hpp"
@@ -16,7 +19,6 @@
 #include "unit_option.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <charconv>
 #include <filesystem>
@@ -33,7 +35,8 @@ struct ArchCommand {
   std::vector<std::string> lengths;  // "36=14.2"
   ArchFileOptions files;
   ArchOptions options;
-  bool overwrite = false, quiet = false, name_in_report = false;
+  bool overwrite = false, name_in_report = false;
+  OutputOptions said;
 };
 
 void add_length(const std::string& text, std::map<int, double>& lengths) {
@@ -48,13 +51,9 @@ void add_length(const std::string& text, std::map<int, double>& lengths) {
   if (!lengths.emplace(*fdi, mm).second) throw UsageError(fmt::format("Tooth {} has two root lengths.", *fdi));
 }
 
-ArchProgress progress_line(bool quiet) {
-  if (quiet || !isatty(STDERR_FILENO)) return {};
-  return [](int done, int teeth, int) {
-    fmt::print(stderr, "\r\033[K{} of {} teeth", done, teeth);
-    if (done == teeth) fmt::print(stderr, "\r\033[K");
-    std::fflush(stderr);
-  };
+ArchProgress progress_on(ProgressLine& line) {
+  if (!line.is_shown()) return {};
+  return [&line](int done, int teeth, int fdi) { line.say(fmt::format("{} of {} teeth: {}", done, teeth, fdi)); };
 }
 
 void print_summary(const CompletedArch& arch) {
@@ -81,6 +80,12 @@ void add_page(const ArchCommand& command, const ScanInput& input, const Complete
                                                {report_views(input, arch), "", hashes_of(weights)})});
 }
 
+/// What arch.json has, where figures were asked for.
+nlohmann::ordered_json figures_of(const ArchCommand& command, const ScanInput& input, const CompletedArch& arch) {
+  if (!command.said.wants_figures()) return nullptr;
+  return nlohmann::ordered_json::parse(arch_report(input, arch, command.options, command.files));
+}
+
 /// Before hours of work.
 void require_page(const std::string& report) {
   if (report.empty()) return;
@@ -92,8 +97,7 @@ void require_page(const std::string& report) {
 void run(ArchCommand& command) {
   require_page(command.report);
   for (const std::string& length : command.lengths) add_length(length, command.options.root_lengths);
-  const std::filesystem::path models =
-      command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
+  const std::filesystem::path models = models_folder(command.models, command.said);
   std::vector<std::filesystem::path> inputs = files_of_scan(command.scan, command.source);
   if (!command.lengths_file.empty()) {
     inputs.emplace_back(command.lengths_file);
@@ -113,20 +117,26 @@ void run(ArchCommand& command) {
   ScanInput input = read_scan(command.scan, command.source, command.options.tooth.millimetres_per_unit);
   std::vector<std::filesystem::path> names = arch_file_names(input.scan, command.files, command.output);
   if (!command.report.empty()) names.emplace_back(command.report);
-  require_safe_outputs(inputs, names);
+  std::vector<std::filesystem::path> outputs = command.said.outputs();
+  outputs.insert(outputs.end(), names.begin(), names.end());
+  require_safe_outputs(inputs, outputs);
   require_new(names, command.overwrite);
-  if (!command.quiet)
+  if (command.said.wants_words())
     for (const std::string& note : input.notes) fmt::print("{}\n", note);
   std::fflush(stdout);  // the work takes a while
   if (command.name_in_report && !input.sha256.empty())
     command.files.scan_name = std::filesystem::path(command.scan).filename().string();
-  CompletedArch arch =
-      complete_arch(input.scan, CompletionModels::load(models), command.options, progress_line(command.quiet));
+  ProgressLine line(command.said);
+  CompletedArch arch = complete_arch(input.scan, CompletionModels::load(models), command.options, progress_on(line));
+  line.clear();
   refuse_what_no_file_holds(arch, command.files);
   std::vector<OutputFile> files = arch_files(input, arch, command.options, command.files, command.output);
   add_page(command, input, arch, weights, files);
+  const nlohmann::ordered_json figures = figures_of(command, input, arch);
+  for (OutputFile& file : command.said.figures_file(figures)) files.push_back(std::move(file));
   write_output_files(files);
-  if (!command.quiet) {
+  command.said.print_figures(figures);
+  if (command.said.wants_words()) {
     print_summary(arch);
     for (const ToothClearance& c : arch.clearances)
       if (const auto mm = c.of_roots(); mm && *mm < 0)
@@ -192,8 +202,8 @@ void add_arch_command(CLI::App& app) {
   arch->add_flag("--overwrite", command->overwrite, "Replace files that are in the folder already");
   arch->add_option("--threads", command->options.tooth.threads, "At most so many threads; 0 = all")
       ->capture_default_str();
-  arch->add_option("--models", command->models, "Folder with the models");
-  arch->add_flag("--quiet", command->quiet, "Print nothing but errors");
+  add_models_option(*arch, command->models);
+  command->said.add_with_figures_to(*arch);
   arch->callback([command] { run(*command); });
 }
 

@@ -4,8 +4,10 @@
 #include "batch/run_batch.hpp"
 #include "batch/status.hpp"
 #include "command_line/output_checks.hpp"
+#include "command_line/output_options.hpp"
+#include "command_line/terminal.hpp"
 #include "commands.hpp"
-#include "json_option.hpp"
+#include "models_option.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/output_files.hpp"
@@ -13,7 +15,6 @@
 #include "unit_option.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -29,12 +30,12 @@ namespace {
 struct BatchCommand {
   std::string manifest, output, models, shard, skirt = "keep";
   BatchOptions options;
-  bool quiet = false;
+  OutputOptions said;
 };
 
 struct StatusCommand {
   std::string folder;
-  JsonOption json;
+  OutputOptions said;
   bool by_case = false;
 };
 
@@ -78,8 +79,8 @@ std::string case_text(const FinishedCase& one) {
 }
 
 /// A line for each case in a log; on a terminal those that failed, and how far it is.
-void say_finished(const FinishedCase& one, const BatchProgress& progress) {
-  if (isatty(STDERR_FILENO) == 0) {
+void say_finished(const FinishedCase& one, const BatchProgress& progress, bool is_verbose) {
+  if (is_verbose || !is_terminal(stderr)) {
     fmt::print(stderr, "{}; {}\n", case_text(one), progress_text(progress));
     return;
   }
@@ -97,6 +98,13 @@ BatchManifest load_manifest(const std::string& file) {
   }
 }
 
+nlohmann::ordered_json figures_of(const BatchShard& shard, const BatchResult& result) {
+  const BatchProgress& progress = result.progress;
+  return {{"shard", shard.index + 1}, {"shards", shard.count},       {"cases", progress.cases},
+          {"done", progress.done},    {"in_part", progress.partial}, {"failed", progress.failed},
+          {"stopped", result.stopped}};
+}
+
 void run(BatchCommand& command) {
   if (command.manifest.empty()) throw UsageError("A batch needs a manifest: rhizodont batch MANIFEST.csv -o FOLDER.");
   if (command.output.empty()) throw UsageError("A batch needs a folder for its results (-o FOLDER).");
@@ -107,16 +115,22 @@ void run(BatchCommand& command) {
   options.cases.crown.e = options.cases.arch.tooth.e;
   options.cases.crown.millimetres_per_unit = options.cases.arch.tooth.millimetres_per_unit;
   const BatchManifest manifest = load_manifest(command.manifest);
-  const std::filesystem::path models =
-      command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
+  const std::filesystem::path models = models_folder(command.models, command.said);
+  std::vector<std::filesystem::path> inputs = model_files(models);
+  inputs.emplace_back(command.manifest);
+  require_safe_outputs(inputs, command.said.outputs());
   const BatchModels loaded = load_batch_models(models);
   heed_stop_signals();
   BatchCallbacks callbacks;
   callbacks.stop = [] { return stop_signal.load() != 0; };
-  if (!command.quiet) callbacks.finished = say_finished;
+  if (!command.said.is_quiet())
+    callbacks.finished = [verbose = command.said.is_verbose()](const FinishedCase& one, const BatchProgress& so_far) {
+      say_finished(one, so_far, verbose);
+    };
   const BatchResult result = run_batch(manifest, loaded, options, command.output, callbacks);
   const BatchProgress& progress = result.progress;
-  if (!command.quiet)
+  write_output_files(command.said.print_or_file(figures_of(options.shard, result)));
+  if (command.said.wants_words())
     fmt::print("shard {} of {}: {} of {} cases done, {} in part, {} failed{}\n", options.shard.index + 1,
                options.shard.count, progress.done, progress.cases, progress.partial, progress.failed,
                result.stopped ? "; stopped, the same command goes on" : "");
@@ -152,12 +166,12 @@ void print_status(const BatchStatus& status, bool by_case) {
 }
 
 void run_status(const StatusCommand& command) {
-  const std::vector<std::filesystem::path> outputs = command.json.outputs();
+  const std::vector<std::filesystem::path> outputs = command.said.outputs();
   require_safe_outputs(files_below(std::filesystem::path(command.folder) / "ledger"), outputs);
   const double now = std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
   const BatchStatus status = batch_status(command.folder, now);
-  write_output_files(command.json.print_or_file(batch_status_json(status)));
-  if (command.json.wants_table()) print_status(status, command.by_case);
+  write_output_files(command.said.print_or_file(batch_status_json(status)));
+  if (command.said.wants_words()) print_status(status, command.by_case);
 }
 
 void add_status_command(CLI::App& batch) {
@@ -165,7 +179,7 @@ void add_status_command(CLI::App& batch) {
   CLI::App* status = batch.add_subcommand("status", "Where a batch stands, also while shards run");
   status->add_option("FOLDER", command->folder, "The batch's folder")->required();
   status->add_flag("--cases", command->by_case, "A line for each case, with the folder of its results");
-  command->json.add_to(*status);
+  command->said.add_with_figures_to(*status);
   status->callback([command] { run_status(*command); });
 }
 
@@ -207,8 +221,8 @@ void add_batch_command(CLI::App& app) {
                   "Names of files may stand in reports, ledger and messages; by default none does");
   add_completion_options(*batch, command);
   batch->add_option("--threads", command->options.threads, "At most so many threads; 0 = all")->capture_default_str();
-  batch->add_option("--models", command->models, "Folder with the models");
-  batch->add_flag("--quiet", command->quiet, "Print nothing but errors");
+  add_models_option(*batch, command->models);
+  command->said.add_with_figures_to(*batch);
   add_status_command(*batch);
   batch->callback([command, batch] {
     if (batch->get_subcommands().empty()) run(*command);

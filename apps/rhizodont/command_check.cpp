@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/output_checks.hpp"
+#include "command_line/output_options.hpp"
+#include "command_line/terminal.hpp"
 #include "commands.hpp"
-#include "json_option.hpp"
+#include "mesh_detail.hpp"
 #include "report/json.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
@@ -22,7 +24,7 @@ struct CheckCommand {
   std::string crown, tooth;
   std::string report;
   CheckOptions options;
-  JsonOption json;
+  OutputOptions said;
 };
 
 template <class Number>
@@ -40,9 +42,13 @@ void print_quality(const char* title, const std::optional<QualityFigures>& figur
   print_table_row("angles under 30 degrees", fmt::format("{:.3f} %", figures->percent_below_30));
 }
 
+std::string kept_or_not(bool holds) {
+  return holds ? coloured(stdout, TextColour::green, "kept") : coloured(stdout, TextColour::red, "NOT KEPT");
+}
+
 void print_table(const CheckReport& report) {
   const CrownCheck& crown = report.crown;
-  fmt::print("Promise 1, the crown is exact: {}\n", crown.holds ? "kept" : "NOT KEPT");
+  fmt::print("Promise 1, the crown is exact: {}\n", kept_or_not(crown.holds));
   print_table_row("coordinates compared as", std::string(crown.compared_as_float ? "float" : "double"));
   print_table_row("crown triangles kept",
                   fmt::format("{} of {} ({:.3f} %)", crown.kept_triangles, crown.triangles, 100 * crown.kept_share));
@@ -61,7 +67,7 @@ void print_table(const CheckReport& report) {
                     fmt::format("{}, {}, {}, {}", bins[0], bins[1], bins[2], bins[3]));
   }
   const SolidCheck& solid = report.solid;
-  fmt::print("Promise 2, the tooth is a solid: {}\n", solid.holds ? "kept" : "NOT KEPT");
+  fmt::print("Promise 2, the tooth is a solid: {}\n", kept_or_not(solid.holds));
   print_table_row("vertices, triangles", fmt::format("{}, {}", solid.vertices, solid.triangles));
   print_number("border edges", solid.border_edges);
   print_table_row("non-manifold edges, vertices",
@@ -95,18 +101,20 @@ MeshFile read_crown(const std::string& path, std::string& sha256) {
 void run(const CheckCommand& command) {
   std::vector<std::filesystem::path> inputs{command.crown, command.tooth};
   if (!command.report.empty()) inputs.emplace_back(command.report);
-  require_safe_outputs(inputs, command.json.outputs());
+  require_safe_outputs(inputs, command.said.outputs());
   std::string sha256;
   const MeshFile crown = read_crown(command.crown, sha256);
   const MeshFile tooth = load_mesh(command.tooth);
+  detail_of_mesh(command.said, command.crown, crown);
+  detail_of_mesh(command.said, command.tooth, tooth);
   CheckOptions options = command.options;
   if (!command.report.empty()) {
     options = allowing_for(excused_by_report(command.report, sha256, crown.file_vertices));
     options.least_kept_share = command.options.least_kept_share;
   }
   const CheckReport report = check(crown.mesh, tooth.mesh, options);
-  if (command.json.wants_table()) print_table(report);
-  write_output_files(command.json.print_or_file(report));
+  if (command.said.wants_words()) print_table(report);
+  write_output_files(command.said.print_or_file(report));
   if (!report.holds()) exit_with(static_cast<int>(ErrorCode::no_result));
 }
 
@@ -127,7 +135,7 @@ void add_check_command(CLI::App& app) {
       ->capture_default_str();
   check_app->add_option("--report", command->report,
                         "Report of 'complete': what it lists as cap, skirt or repaired is not demanded");
-  command->json.add_to(*check_app);
+  command->said.add_with_figures_to(*check_app);
   check_app->callback([command] { run(*command); });
 }
 

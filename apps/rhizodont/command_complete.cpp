@@ -1,9 +1,14 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/number_options.hpp"
+#include "command_line/output_options.hpp"
+#include "command_line/progress_line.hpp"
+#include "command_line/terminal.hpp"
 #include "command_line/words.hpp"
 #include "commands.hpp"
 #include "complete_jobs.hpp"
+#include "mesh_detail.hpp"
+#include "models_option.hpp"
 #include "report/html_report.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
@@ -15,7 +20,6 @@
 #include "unit_option.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -29,6 +33,8 @@
 namespace rhizodont::command_line {
 namespace {
 
+using Json = nlohmann::ordered_json;
+
 struct CompleteCommand {
   CompleteFiles files;
   std::string format;
@@ -36,23 +42,16 @@ struct CompleteCommand {
   std::string skirt = "keep";
   bool as_float = false;
   bool name_in_report = false;
-  bool quiet = false;
+  OutputOptions said;
   CompleteOptions options;
 };
 
 const std::map<std::string, CapHandling> cap_names{{"drop", CapHandling::drop}, {"keep", CapHandling::keep}};
 
-/// One line that names the stage at work, on a terminal only.
-ProgressCallback progress_line(bool quiet, const std::string& before) {
-  if (quiet || !isatty(STDERR_FILENO)) return {};
-  return [before](std::string_view stage) {
-    fmt::print(stderr, "\r\033[K{}{} ...", before, stage);
-    std::fflush(stderr);
-  };
-}
-
-void clear_line(const ProgressCallback& progress) {
-  if (progress) fmt::print(stderr, "\r\033[K");
+/// Names the stage at work.
+ProgressCallback progress_on(ProgressLine& line, const std::string& before) {
+  if (!line.is_shown()) return {};
+  return [&line, before](std::string_view stage) { line.say(fmt::format("{}{} ...", before, stage)); };
 }
 
 void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::string& output) {
@@ -77,7 +76,8 @@ void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::strin
   for (const RepairStep& step : r.repairs)
     fmt::print(out, "  repaired: {} ({} vertices, {} triangles)\n", action_text(step), step.vertices.size(),
                step.triangles.size());
-  for (const std::string& warning : all_warnings(r)) fmt::print(out, "  note: {}\n", warning);
+  for (const std::string& warning : all_warnings(r))
+    fmt::print(out, "  {} {}\n", coloured(out, TextColour::yellow, "note:"), warning);
 }
 
 /// All that the crowns of a command have in common.
@@ -85,7 +85,7 @@ class Completion {
  public:
   explicit Completion(const CompleteCommand& command)
       : command_(command),
-        models_folder_(command.models.empty() ? default_models_folder() : std::filesystem::path(command.models)),
+        models_folder_(models_folder(command.models, command.said)),
         jobs_(plan_complete(command.files, models_folder_)) {
     if (!command.files.confidence.empty() && !skirt_threshold(command.skirt))
       throw UsageError("A confidence is there only where a skirt is looked for (--skirt auto).");
@@ -97,6 +97,8 @@ class Completion {
         for (const auto& name : *names)
           if (is_standard_output(name)) words_ = stderr;
     if (is_standard_output(jobs_.front().confidence)) words_ = stderr;
+    if (words_ == stderr && command.said.prints_figures())
+      throw UsageError("Figures (--json) would be mixed with what goes to standard output: give them a file.");
   }
 
   /// Completes them all; one that fails does not stop the others. The largest of their exit codes.
@@ -110,7 +112,10 @@ class Completion {
       worst = std::max(worst, code);
       completed += code == 0;
     }
-    if (jobs_.size() > 1 && !command_.quiet) fmt::print(words_, "{} of {} crowns completed\n", completed, jobs_.size());
+    if (jobs_.size() > 1) write_output_files(command_.said.figures_file(figures()));
+    command_.said.print_figures(figures());
+    if (jobs_.size() > 1 && command_.said.wants_words())
+      fmt::print(words_, "{} of {} crowns completed\n", completed, jobs_.size());
     return worst;
   }
 
@@ -134,13 +139,17 @@ class Completion {
       complete_one(job, place, attempt);
       return 0;
     } catch (const Error& error) {
-      const bool reported =
-          !job.reports.empty() && (error.code() == ErrorCode::unusable_input || error.code() == ErrorCode::no_result);
+      const bool is_refusal = error.code() == ErrorCode::unusable_input || error.code() == ErrorCode::no_result;
+      const bool reported = !job.reports.empty() && is_refusal;
       say(error_line(error, reported ? "see " + job.reports.front().string() : ""), job, !attempt.is_read);
       const int code = static_cast<int>(error.code());
-      return reported ? std::max(code, write_refusal(error, attempt, job)) : code;
+      const std::string report =
+          is_refusal ? completion_refusal_report(error, attempt.options, attempt.input, attempt.notes) : "";
+      add_figures(job, code, Json::array(), is_refusal ? Json::parse(report) : Json(nullptr));
+      return is_refusal ? std::max(code, write_refusal(report, job)) : code;
     } catch (const std::exception& fault) {  // the other crowns may do
       say(fault_line(fault), job, !attempt.is_read);
+      add_figures(job, static_cast<int>(ErrorCode::internal), Json::array(), nullptr);
       return static_cast<int>(ErrorCode::internal);
     }
   }
@@ -159,26 +168,27 @@ class Completion {
                                  name_with_format(job.teeth.front(), command_.files.output_format));
     const std::string before =
         jobs_.size() > 1 ? fmt::format("{} ({} of {}): ", job.shown_crown(), place + 1, jobs_.size()) : "";
-    const ProgressCallback progress = progress_line(command_.quiet, before);
+    detail_of_mesh(command_.said, job.shown_crown(), crown);
+    ProgressLine line(command_.said);
     std::vector<CompletedTooth> candidates;
     try {
-      candidates = complete_candidates(crown.mesh, *models_, command_.files.candidates, options, progress);
+      candidates =
+          complete_candidates(crown.mesh, *models_, command_.files.candidates, options, progress_on(line, before));
     } catch (const InputError& error) {
-      clear_line(progress);
       throw in_terms_of_file(error, crown);
     } catch (const NoResultError& error) {
-      clear_line(progress);
       throw in_terms_of_file(error, crown);
-    } catch (...) {
-      clear_line(progress);
-      throw;
     }
-    clear_line(progress);
+    line.clear();
     for (CompletedTooth& tooth : candidates) warn_of_rounding(input, tooth.record);
     for (std::size_t i = 0; i < candidates.size(); ++i)
       require_format_holds(candidates[i], name_with_format(job.teeth[i], command_.files.output_format));
     write_results(job, crown, candidates, input);
-    if (!command_.quiet) print_results(job, candidates);
+    for (const CompletedTooth& tooth : candidates)
+      for (const StageRecord& stage : tooth.record.stages)
+        command_.said.detail(
+            fmt::format("  {:<36}{:7.3f} s, {:.0f} MB", stage.name, stage.seconds, stage.peak_memory_mb));
+    if (command_.said.wants_words()) print_results(job, candidates);
   }
 
   MeshFile read_crown(const CrownJob& job, ReportedInput& input) const {
@@ -189,8 +199,9 @@ class Completion {
 
   /// Their records refer to the crown's file from then on.
   void write_results(const CrownJob& job, const MeshFile& crown, std::vector<CompletedTooth>& candidates,
-                     const ReportedInput& input) const {
+                     const ReportedInput& input) {
     std::vector<OutputFile> results;
+    Json teeth = Json::array();
     const auto add_mesh = [&](const std::filesystem::path& path, const MeshFile& mesh) {
       results.push_back({path, mesh_file_bytes(name_with_format(path, command_.files.output_format), mesh)});
     };
@@ -200,11 +211,20 @@ class Completion {
       std::map<std::string, std::string> views;
       if (!job.reports.empty() && is_page_name(job.reports[i])) views = report_views(candidates[i], crown);
       refer_to_file(candidates[i].record, crown, name_with_format(job.teeth[i], command_.files.output_format));
-      if (!job.reports.empty())
-        results.push_back(
-            {job.reports[i], as_named(job.reports[i], completion_report(candidates[i], input), std::move(views))});
+      const std::string report =
+          job.reports.empty() && !command_.said.wants_figures() ? "" : completion_report(candidates[i], input);
+      if (!job.reports.empty()) results.push_back({job.reports[i], as_named(job.reports[i], report, std::move(views))});
+      if (command_.said.wants_figures())
+        teeth.push_back({{"tooth", job.teeth[i].string()}, {"report", Json::parse(report)}});
     }
-    write_output_files(results);
+    add_figures(job, 0, std::move(teeth), nullptr);
+    add_figures_of_only_crown(results);
+    try {
+      write_output_files(results);
+    } catch (...) {
+      figures_.erase(figures_.size() - 1);  // there is no tooth after all
+      throw;
+    }
   }
 
   void print_results(const CrownJob& job, const std::vector<CompletedTooth>& candidates) const {
@@ -221,16 +241,30 @@ class Completion {
   /// The crown's name goes to the screen alone: reports are passed on, and names tell of patients.
   void say(const std::string& line, const CrownJob& job, bool is_about_file) const {
     const bool needs_name = (is_about_file || jobs_.size() > 1) && line.find(job.shown_crown()) == std::string::npos;
-    fmt::print(stderr, "rhizodont: {}{}\n", needs_name ? job.shown_crown() + ": " : "", line);
+    print_error("rhizodont", (needs_name ? job.shown_crown() + ": " : "") + line);
   }
 
-  /// The report says of a crown without a tooth why and where.
-  int write_refusal(const Error& error, const Attempt& attempt, const CrownJob& job) const {
+  /// `teeth`: each with its report; `refusal`: the report on a crown without any, or null.
+  void add_figures(const CrownJob& job, int code, Json teeth, Json refusal) {
+    figures_.push_back(
+        {{"crown", job.crown}, {"exit_code", code}, {"teeth", std::move(teeth)}, {"refusal", std::move(refusal)}});
+  }
+
+  Json figures() const { return {{"crowns", figures_}}; }
+
+  /// The file of figures appears with the crown's results; of several crowns it comes after all of them.
+  void add_figures_of_only_crown(std::vector<OutputFile>& results) const {
+    if (jobs_.size() > 1) return;
+    for (OutputFile& file : command_.said.figures_file(figures())) results.push_back(std::move(file));
+  }
+
+  /// The report and the figures say of a crown without a tooth why and where.
+  int write_refusal(const std::string& report, const CrownJob& job) const {
     try {
-      write_output_files(
-          {{job.reports.front(),
-            as_named(job.reports.front(),
-                     completion_refusal_report(error, attempt.options, attempt.input, attempt.notes), {})}});
+      std::vector<OutputFile> results;
+      if (!job.reports.empty()) results.push_back({job.reports.front(), as_named(job.reports.front(), report, {})});
+      add_figures_of_only_crown(results);
+      write_output_files(results);
       return 0;
     } catch (const Error& unwritable) {
       say(error_line(unwritable), job, false);
@@ -243,6 +277,7 @@ class Completion {
   std::vector<CrownJob> jobs_;
   std::optional<CompletionModels> models_;
   bool has_pages_ = false;
+  Json figures_ = Json::array();                     // of the crowns so far
   std::map<std::string, std::string> model_hashes_;  // of the pages
   std::FILE* words_ = stdout;                        // what is said to the user, so that it does not get into a mesh
 };
@@ -326,9 +361,12 @@ void add_complete_command(CLI::App& app) {
   add_root_options(*complete, command->options.steering);
   complete->add_option("--threads", command->options.threads, "At most so many threads; 0 = all")
       ->capture_default_str();
-  complete->add_option("--models", command->models, "Folder with completion.safetensors and atlas.safetensors");
-  complete->add_flag("--quiet", command->quiet, "Print nothing but errors");
-  complete->callback([command] { run(*command); });
+  add_models_option(*complete, command->models);
+  command->said.add_with_figures_to(*complete);
+  complete->callback([command] {
+    command->files.figures = command->said.outputs();
+    run(*command);
+  });
 }
 
 }  // namespace rhizodont::command_line

@@ -1,13 +1,15 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/output_checks.hpp"
+#include "command_line/output_options.hpp"
+#include "command_line/progress_line.hpp"
 #include "commands.hpp"
 #include "evaluate_labels.hpp"
 #include "evaluation/calibration.hpp"
 #include "evaluation/evaluate_cases.hpp"
 #include "evaluation/evaluation_plot.hpp"
-#include "evaluation/template_predictor.hpp"
-#include "json_option.hpp"
+#include "evaluation/predictors.hpp"
+#include "models_option.hpp"
 #include "networks/safetensors.hpp"
 #include "report/html_report.hpp"
 #include "rhizodont/complete.hpp"
@@ -17,7 +19,6 @@
 #include "rhizodont/version.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <memory>
@@ -31,37 +32,16 @@ namespace {
 
 struct EvaluateCommand {
   std::string cases, templates, models, csv, plot, report, calibrate, labels;
-  JsonOption json;
+  OutputOptions said;
   CompleteOptions options;
 };
 
-NamedPredictor rhizodont_predictor(const EvaluateCommand& command) {
-  const auto models = std::make_shared<const CompletionModels>(
-      CompletionModels::load(command.models.empty() ? default_models_folder() : std::filesystem::path(command.models)));
-  return {"rhizodont", [models, options = command.options](const TriangleMesh& crown, int fdi) {
-            CompleteOptions of_this = options;
-            of_this.fdi = fdi;
-            return prediction_of(complete_tooth(crown, *models, of_this));
-          }};
-}
-
-NamedPredictor template_predictor(const std::string& folder) {
-  return {"template", [folder](const TriangleMesh& crown, int fdi) {
-            return ToothPrediction{fit_template(crown, load_template_tooth(folder, fdi)), {}, 0, {}};
-          }};
-}
-
-/// One line that says which tooth is at work, on a terminal only.
-EvaluationProgress progress_line(std::size_t cases) {
-  if (!isatty(STDERR_FILENO)) return {};
-  return [cases](const EvaluationCase& files, std::size_t place, const std::string& predictor) {
-    fmt::print(stderr, "\r\033[Ktooth {} ({} of {}), {} ...", files.fdi, place + 1, cases, predictor);
-    std::fflush(stderr);
+/// Says which tooth is at work.
+EvaluationProgress progress_on(ProgressLine& line, std::size_t cases) {
+  if (!line.is_shown()) return {};
+  return [&line, cases](const EvaluationCase& files, std::size_t place, const std::string& predictor) {
+    line.say(fmt::format("tooth {} ({} of {}), {} ...", files.fdi, place + 1, cases, predictor));
   };
-}
-
-void clear_line(const EvaluationProgress& progress) {
-  if (progress) fmt::print(stderr, "\r\033[K");
 }
 
 void print_header() {
@@ -139,13 +119,10 @@ void print_table(const Evaluation& evaluation) {
 OutputFile calibrated_weights(const EvaluateCommand& command, const Evaluation& evaluation) {
   TensorFile weights = read_safetensors(command.calibrate);
   const UncertaintyScales scales = calibrate_weights(evaluation, 0, weights.metadata);
-  fmt::print("{}: root length {:+.2f} to {:+.2f}, apex {:.2f}, surface {:.2f} times the expected distance\n",
-             command.calibrate, scales.length_low, scales.length_high, scales.apex, scales.surface);
+  if (command.said.wants_words())
+    fmt::print("{}: root length {:+.2f} to {:+.2f}, apex {:.2f}, surface {:.2f} times the expected distance\n",
+               command.calibrate, scales.length_low, scales.length_high, scales.apex, scales.surface);
   return {command.calibrate, safetensors_bytes(weights)};
-}
-
-std::filesystem::path models_folder(const EvaluateCommand& command) {
-  return command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
 }
 
 /// Before hours of work: none of the results may cost a tooth, a template or the weights; the weights themselves are
@@ -153,13 +130,13 @@ std::filesystem::path models_folder(const EvaluateCommand& command) {
 void require_safe_places(const EvaluateCommand& command, const std::vector<EvaluationCase>& cases) {
   std::vector<std::filesystem::path> inputs = files_below(command.templates);
   for (const EvaluationCase& files : cases) inputs.insert(inputs.end(), {files.crown, files.truth});
-  std::vector<std::filesystem::path> outputs = command.json.outputs();
+  std::vector<std::filesystem::path> outputs = command.said.outputs();
   for (const std::string* file : {&command.csv, &command.plot, &command.report}) {
     if (file->empty()) continue;
     require_no_mesh_ending(*file, "a table, a plot or a page");
     outputs.emplace_back(*file);
   }
-  require_separate_files(model_files(models_folder(command)), outputs);
+  require_separate_files(model_files(models_folder(command.models, command.said)), outputs);
   if (!command.calibrate.empty()) outputs.emplace_back(command.calibrate);
   require_safe_outputs(inputs, outputs);
 }
@@ -178,9 +155,9 @@ std::string page_of(const EvaluateCommand& command, const std::vector<Evaluation
                                 {"evaluation", evaluation},
                                 {"scanner_limits", describe(CbctNoise{})}};
   const bool has_figures = mean_figures(evaluation, 0).teeth > 0;
-  return html_report(
-      report.dump(),
-      {{}, has_figures ? root_length_plot(evaluation) : "", hashes_of(model_files(models_folder(command)))});
+  return html_report(report.dump(), {{},
+                                     has_figures ? root_length_plot(evaluation) : "",
+                                     hashes_of(model_files(models_folder(command.models, command.said)))});
 }
 
 void run(const EvaluateCommand& command) {
@@ -190,25 +167,20 @@ void run(const EvaluateCommand& command) {
   }
   const std::vector<EvaluationCase> cases = find_evaluation_cases(command.cases);
   require_safe_places(command, cases);
-  std::vector<NamedPredictor> predictors{rhizodont_predictor(command)};
+  const CompletionModels models = CompletionModels::load(models_folder(command.models, command.said));
+  std::vector<NamedPredictor> predictors{completing_predictor(models, command.options)};
   if (!command.templates.empty()) predictors.push_back(template_predictor(command.templates));
-  const EvaluationProgress progress = progress_line(cases.size());
-  std::optional<Evaluation> evaluation;
-  try {
-    evaluation = evaluate_cases(cases, predictors, {}, progress);
-  } catch (...) {
-    clear_line(progress);
-    throw;
-  }
-  clear_line(progress);
-  if (command.json.wants_table()) print_table(*evaluation);
-  std::vector<OutputFile> results = command.json.print_or_file(*evaluation);
-  if (!command.csv.empty()) results.push_back({command.csv, evaluation_csv(*evaluation)});
-  if (!command.plot.empty()) results.push_back({command.plot, root_length_plot(*evaluation)});
-  if (!command.report.empty()) results.push_back({command.report, page_of(command, cases, *evaluation)});
-  if (!command.calibrate.empty()) results.push_back(calibrated_weights(command, *evaluation));
+  ProgressLine line(command.said);
+  const Evaluation evaluation = evaluate_cases(cases, predictors, {}, progress_on(line, cases.size()));
+  line.clear();
+  if (command.said.wants_words()) print_table(evaluation);
+  std::vector<OutputFile> results = command.said.print_or_file(evaluation);
+  if (!command.csv.empty()) results.push_back({command.csv, evaluation_csv(evaluation)});
+  if (!command.plot.empty()) results.push_back({command.plot, root_length_plot(evaluation)});
+  if (!command.report.empty()) results.push_back({command.report, page_of(command, cases, evaluation)});
+  if (!command.calibrate.empty()) results.push_back(calibrated_weights(command, evaluation));
   write_output_files(results);
-  if (evaluation->has_failures()) exit_with(static_cast<int>(ErrorCode::no_result));
+  if (evaluation.has_failures()) exit_with(static_cast<int>(ErrorCode::no_result));
 }
 
 }  // namespace
@@ -224,7 +196,7 @@ void add_evaluate_command(CLI::App& app) {
   evaluate->add_option("--e", command->options.e, "Side of the lattice in mm, 0.2 to 2")->capture_default_str();
   evaluate->add_option("--threads", command->options.threads, "At most so many threads; 0 = all")
       ->capture_default_str();
-  evaluate->add_option("--models", command->models, "Folder with completion.safetensors and atlas.safetensors");
+  add_models_option(*evaluate, command->models);
   evaluate->add_option("--csv", command->csv, "Write one line per tooth and predictor to this file");
   evaluate->add_option("--plot", command->plot, "Draw predicted against true root lengths to this SVG file");
   evaluate->add_option("--report", command->report, "Write tables, plot and provenance as a page in one file (.html)");
@@ -232,13 +204,13 @@ void add_evaluate_command(CLI::App& app) {
       "--calibrate", command->calibrate,
       "Scale the intervals in this weight file (--models' completion.safetensors) to these teeth, which "
       "must not have been trained on");
-  command->json.add_to(*evaluate);
   evaluate->add_option("--labels", command->labels,
                        "Instead: CASES_DIR has scans with true labels (SCAN.json) beside them; this folder has the "
                        "labels to judge, a SCAN.json each");
+  command->said.add_with_figures_to(*evaluate);
   evaluate->callback([command] {
     if (!command->labels.empty()) {
-      evaluate_labels(command->cases, command->labels);
+      evaluate_labels(command->cases, command->labels, command->said);
       return;
     }
     run(*command);

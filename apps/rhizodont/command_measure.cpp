@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/output_checks.hpp"
+#include "command_line/output_options.hpp"
 #include "commands.hpp"
-#include "json_option.hpp"
+#include "mesh_detail.hpp"
 #include "report/json.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/measure.hpp"
@@ -18,7 +19,7 @@ namespace {
 
 struct MeasureCommand {
   std::string mesh;
-  JsonOption json;
+  OutputOptions said;
 };
 
 void print_table(const MeshMeasures& m) {
@@ -50,10 +51,12 @@ void print_table(const MeshMeasures& m) {
 }
 
 void run(const MeasureCommand& command) {
-  require_safe_outputs({command.mesh}, command.json.outputs());
-  const MeshMeasures measures = measure(load_mesh(command.mesh).mesh);
-  if (command.json.wants_table()) print_table(measures);
-  write_output_files(command.json.print_or_file(measures));
+  require_safe_outputs({command.mesh}, command.said.outputs());
+  const MeshFile file = load_mesh(command.mesh);
+  detail_of_mesh(command.said, command.mesh, file);
+  const MeshMeasures measures = measure(file.mesh);
+  if (command.said.wants_words()) print_table(measures);
+  write_output_files(command.said.print_or_file(measures));
 }
 
 }  // namespace
@@ -63,7 +66,7 @@ void add_measure_command(CLI::App& app) {
   CLI::App* measure_app = app.add_subcommand(
       "measure", "Triangle quality, topology, volume and sizes of any mesh (.stl .ply .obj .off .vtp)");
   measure_app->add_option("MESH", command->mesh, "The mesh")->required();
-  command->json.add_to(*measure_app);
+  command->said.add_with_figures_to(*measure_app);
   measure_app->callback([command] { run(*command); });
 }
 

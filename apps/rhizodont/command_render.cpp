@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/tooth_labels.hpp"
 #include "command_line/output_checks.hpp"
+#include "command_line/output_options.hpp"
 #include "commands.hpp"
+#include "mesh_detail.hpp"
 #include "pictures/render.hpp"
 #include "pictures/tiles.hpp"
 #include "pictures/tooth_colours.hpp"
@@ -26,6 +28,7 @@ struct RenderCommand {
   std::string colour_by = "auto";
   RenderOptions options;
   std::size_t per_row = 1;
+  OutputOptions said;
 };
 
 std::vector<Colour> colours_of(const MeshFile& file, const std::string& colour_by, const std::string& path) {
@@ -48,7 +51,8 @@ void run(const RenderCommand& command) {
   require_ending(command.output, {".png"}, "a picture");
   require_safe_outputs({command.meshes.begin(), command.meshes.end()}, {command.output});
   std::vector<MeshFile> files;
-  for (const std::string& path : command.meshes) files.push_back(load_mesh(path));
+  for (const std::string& path : command.meshes)
+    detail_of_mesh(command.said, path, files.emplace_back(load_mesh(path)));
   std::vector<RenderItem> items;
   for (std::size_t k = 0; k < files.size(); ++k) {
     RenderItem item{&files[k].mesh, colours_of(files[k], command.colour_by, command.meshes[k]), upward_of(files[k])};
@@ -90,6 +94,7 @@ void add_render_command(CLI::App& app) {
                    "source, fdi (numbers of teeth), another attribute of a PLY file, none, or auto: source or fdi if "
                    "there is one")
       ->capture_default_str();
+  command->said.add_to(*render_app);
   render_app->callback([command] { run(*command); });
 }
 

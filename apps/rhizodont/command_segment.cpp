@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "base/tooth_labels.hpp"
 #include "command_line/output_checks.hpp"
+#include "command_line/output_options.hpp"
 #include "commands.hpp"
 #include "io/scan_labels.hpp"
 #include "io/write_labels.hpp"
+#include "mesh_detail.hpp"
+#include "models_option.hpp"
+#include "report/json.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "rhizodont/models.hpp"
@@ -29,7 +33,8 @@ struct SegmentCommand {
   FoundTeethOptions teeth;
   SegmentOptions options;
   LabelNumbers numbers = LabelNumbers::fdi;
-  bool overwrite = false, quiet = false;
+  bool overwrite = false;
+  OutputOptions said;
 };
 
 /// The labels in the dialect that the file's name asks for.
@@ -47,19 +52,40 @@ std::string label_bytes(const SegmentCommand& command, const MeshFile& scan, con
   return vtk_with_point_labels(scan.mesh, numbered_as(found.fdi, LabelNumbers::universal));
 }
 
+nlohmann::ordered_json figures_of(const SegmentedScan& found) {
+  nlohmann::ordered_json teeth = nlohmann::ordered_json::array();
+  for (const FoundTooth& tooth : found.teeth) {
+    nlohmann::ordered_json one = tooth;
+    one["middle"] = numbers(tooth.middle);
+    one["vertices"] = tooth.vertices;
+    teeth.push_back(std::move(one));
+  }
+  return {{"jaw", found.jaw == Jaw::upper ? "upper" : "lower"},
+          {"jaw_confidence", found.jaw_confidence},
+          {"jaw_reason", found.jaw_reason},
+          {"teeth", teeth},
+          {"notes", found.notes}};
+}
+
 void run(SegmentCommand& command) {
   require_ending(command.output, {".json", ".ply", ".vtp", ".vtk"}, "labels of a scan");
-  const std::filesystem::path models =
-      command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
+  const std::filesystem::path models = models_folder(command.models, command.said);
   std::vector<std::filesystem::path> inputs{command.scan};
   for (const std::filesystem::path& file : segment_model_files(models)) inputs.push_back(file);
-  require_safe_outputs(inputs, {command.output});
+  std::vector<std::filesystem::path> outputs = command.said.outputs();
+  outputs.emplace_back(command.output);
+  require_safe_outputs(inputs, outputs);
   require_new({command.output}, command.overwrite);
   command.teeth.read_into(command.options);
   const MeshFile scan = load_mesh(command.scan);
+  detail_of_mesh(command.said, command.scan, scan);
   const SegmentedScan found = segment_scan(scan.mesh, SegmentModels::load(models), command.options);
-  write_output_files({{command.output, label_bytes(command, scan, found)}});
-  if (command.quiet) return;
+  std::vector<OutputFile> files;
+  if (command.said.wants_figures()) files = command.said.figures_file(figures_of(found));
+  files.push_back({command.output, label_bytes(command, scan, found)});
+  write_output_files(files);
+  if (command.said.prints_figures()) command.said.print_figures(figures_of(found));
+  if (!command.said.wants_words()) return;
   for (const std::string& note : scan.notes) fmt::print("{}\n", note);
   fmt::print("{}\n", found.jaw_reason);
   for (const FoundTooth& tooth : found.teeth)
@@ -87,8 +113,8 @@ void add_segment_command(CLI::App& app) {
                   "Unit of the scan's file: mm, cm, m, um, in, also in full and in capitals");
   segment->add_flag("--overwrite", command->overwrite, "Replace a file that is there already");
   segment->add_option("--threads", command->options.threads, "At most so many threads; 0 = all")->capture_default_str();
-  segment->add_option("--models", command->models, "Folder with segment.safetensors and arch.safetensors");
-  segment->add_flag("--quiet", command->quiet, "Print nothing but errors");
+  add_models_option(*segment, command->models);
+  command->said.add_with_figures_to(*segment);
   segment->callback([command] { run(*command); });
 }
 

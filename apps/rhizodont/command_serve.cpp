@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "command_line/output_options.hpp"
 #include "commands.hpp"
+#include "models_option.hpp"
 #include "report/html_report.hpp"
 #include "rhizodont/models.hpp"
 #include "rhizodont/segment.hpp"
@@ -21,7 +23,7 @@ namespace {
 struct ServeCommand {
   int port = 8080;
   std::string models;
-  bool quiet = false;
+  OutputOptions said;
 };
 
 /// Ctrl-C, a closed terminal and the system's end are an ordinary end here.
@@ -36,9 +38,8 @@ void run(const ServeCommand& command) {
   const sigset_t signals = ending_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // before there are threads: all of them leave these to this one
   serve::ServiceOptions options;
-  if (!command.quiet) options.log = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
-  const std::filesystem::path models =
-      command.models.empty() ? default_models_folder() : std::filesystem::path(command.models);
+  if (!command.said.is_quiet()) options.log = [](const std::string& line) { fmt::print(stderr, "{}\n", line); };
+  const std::filesystem::path models = models_folder(command.models, command.said);
   std::vector<std::filesystem::path> weights = model_files(models);
   if (SegmentModels::are_in(models)) {
     options.finder = std::make_shared<const SegmentModels>(SegmentModels::load(models));
@@ -64,8 +65,8 @@ void add_serve_command(CLI::App& app) {
   serve->add_option("--port", command->port, "Port on 127.0.0.1, 1 to 65535; 0: any that is free")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  serve->add_option("--models", command->models, "Folder with the models");
-  serve->add_flag("--quiet", command->quiet, "Do not log requests to standard error");
+  add_models_option(*serve, command->models);
+  command->said.add_to(*serve);
   serve->callback([command] { run(*command); });
 }
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/output_checks.hpp"
+#include "command_line/output_options.hpp"
 #include "commands.hpp"
 #include "families/crown_crop.hpp"
 #include "families/mean_arch.hpp"
@@ -48,6 +49,7 @@ struct SynthCommand {
   std::vector<std::size_t> triangles;
   bool upright = false;
   double grid_mm = 0;
+  OutputOptions said;
 };
 
 CroppedCrown crop(const SynthCommand& command, const SyntheticTooth& tooth, std::uint64_t seed, int fdi) {
@@ -59,12 +61,12 @@ CroppedCrown crop(const SynthCommand& command, const SyntheticTooth& tooth, std:
 
 void write_atlas(const SynthCommand& command, const ToothFamilies& families) {
   save_atlas(make_atlas(families), command.atlas);
-  fmt::print("{}\n", command.atlas);
+  command.said.tell(command.atlas);
 }
 
 void write_arch(const SynthCommand& command, const ToothFamilies& families) {
   save_arch_model(make_arch_model(make_atlas(families), std::filesystem::path(command.data) / "crowns"), command.arch);
-  fmt::print("{}\n", command.arch);
+  command.said.tell(command.arch);
 }
 
 /// Teeth made so far, for the sheet.
@@ -131,8 +133,9 @@ void write_tooth(const SynthCommand& command, const ToothFamilies& families, int
     drawing.colours.push_back({plain_colour()});
   }
   write_output_files(files);
-  fmt::print("{}: root {:.1f} mm, crown {:.1f} mm, {} root{}\n", tooth_name.string(), tooth.root_length,
-             tooth.crown_height, tooth.apices.size(), tooth.apices.size() == 1 ? "" : "s");
+  command.said.tell(fmt::format("{}: root {:.1f} mm, crown {:.1f} mm, {} root{}", tooth_name.string(),
+                                tooth.root_length, tooth.crown_height, tooth.apices.size(),
+                                tooth.apices.size() == 1 ? "" : "s"));
   drawing.meshes.push_back(file.mesh);
   drawing.colours.push_back(colours_by_source(file.mesh, file.vertex_attributes.at(source_attribute).values));
 }
@@ -177,7 +180,7 @@ void write_contact_sheet(const SynthCommand& command, const ToothFamilies& famil
     items.push_back({&tooth.mesh, colours_by_source(tooth.mesh, tooth.vertex_attributes.at(source_attribute).values),
                      Eigen::Vector3d::UnitZ().eval()});
   write_output_files({{command.sheet, encode_png(side_by_side(render(items, options), items.size(), count))}});
-  fmt::print("{}\n", command.sheet);
+  command.said.tell(command.sheet);
 }
 
 /// Crowns as they are cut from scans, skirts labelled.
@@ -191,15 +194,15 @@ void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
       const SkirtSample sample = make_skirt_sample(families, seed, options);
       const auto name = file_name(command, "skirt", fdi, seed);
       save_mesh(name, skirt_sample_file(sample));
-      fmt::print("{}: {} vertices, {} skirt\n", name.string(), sample.is_tooth.size(),
-                 std::count(sample.is_tooth.begin(), sample.is_tooth.end(), 0));
+      command.said.tell(fmt::format("{}: {} vertices, {} skirt", name.string(), sample.is_tooth.size(),
+                                    std::count(sample.is_tooth.begin(), sample.is_tooth.end(), 0)));
     }
   }
 }
 
 SynthArches arches_of(const SynthCommand& command) {
-  SynthArches arches{
-      command.data, command.output, command.sheet, command.count, command.seed, command.crown_format, {}};
+  SynthArches arches{command.data, command.output, command.sheet, command.count, command.seed, command.crown_format,
+                     {},           command.said};
   if (command.person || !command.population.empty())
     throw UsageError("Scans of arches are made of models of crowns: --person and --population are for teeth.");
   if (command.output.empty() && command.sheet.empty())
@@ -288,6 +291,7 @@ void add_synth_command(CLI::App& app) {
   synth->add_option("--arch-model", command->arch,
                     "Write where the mean crowns stand in the arch, and how, to this safetensors file");
   synth->add_flag("--overwrite", command->overwrite, "Teeth and crowns of the same names in the folder are replaced");
+  command->said.add_to(*synth);
   synth->callback([command] { run(*command); });
 }
 

@@ -13,6 +13,7 @@ namespace rhizodont::command_line {
 void add_arch_command(CLI::App& app);
 void add_batch_command(CLI::App& app);
 void add_complete_command(CLI::App& app);
+void add_doctor_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_check_command(CLI::App& app);
 void add_measure_command(CLI::App& app);

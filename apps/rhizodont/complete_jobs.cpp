@@ -142,6 +142,7 @@ std::vector<CrownJob> plan_complete(const CompleteFiles& files, const fs::path& 
     outputs.insert(outputs.end(), job.reports.begin(), job.reports.end());
     if (!job.confidence.empty()) outputs.push_back(job.confidence);
   }
+  outputs.insert(outputs.end(), files.figures.begin(), files.figures.end());
   require_own_names(jobs);
   require_separate_files(inputs, outputs);
   require_new(made_up, files.overwrite);

@@ -20,6 +20,7 @@ struct CompleteFiles {
   std::optional<int> fdi;
   int candidates = 1;
   bool overwrite = false;
+  std::vector<std::filesystem::path> figures;  ///< the file of --json, if there is to be one
 };
 
 /// One crown's part of the command.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evaluate_labels.hpp"
 
+#include "command_line/output_checks.hpp"
 #include "evaluation/segmentation_figures.hpp"
 #include "io/scan_labels.hpp"
 #include "rhizodont/error.hpp"
@@ -51,23 +52,35 @@ std::string errors_of(const SegmentationFigures& figures) {
 
 }  // namespace
 
-void evaluate_labels(const std::filesystem::path& scans, const std::filesystem::path& found) {
+void evaluate_labels(const std::filesystem::path& scans, const std::filesystem::path& found,
+                     const OutputOptions& said) {
+  std::vector<std::filesystem::path> inputs = files_below(scans);
+  for (const std::filesystem::path& file : files_below(found)) inputs.push_back(file);
+  require_safe_outputs(inputs, said.outputs());
   std::vector<SegmentationFigures> all;
-  fmt::print("{:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}  {}\n", "scan", "TSA", "TLA", "TIR", "strict", "faces", "IoU",
-             "wrong: =taken for, ~in part, -not there, +extra");
+  nlohmann::ordered_json figures = nlohmann::ordered_json::array();
+  if (said.wants_words())
+    fmt::print("{:<28}{:>8}{:>8}{:>8}{:>8}{:>8}{:>8}  {}\n", "scan", "TSA", "TLA", "TIR", "strict", "faces", "IoU",
+               "wrong: =taken for, ~in part, -not there, +extra");
   for (const std::filesystem::path& path : labelled_scans(scans)) {
+    said.detail(path.string());
     const MeshFile scan = load_mesh(path);
     std::filesystem::path truth = path;
     truth.replace_extension(".json");
-    const std::filesystem::path said = found / truth.filename();
+    const std::filesystem::path answer = found / truth.filename();
     const std::vector<int> labels =
-        std::filesystem::exists(said) ? labels_in(said, scan) : std::vector<int>(scan.mesh.vertices.size(), 0);
+        std::filesystem::exists(answer) ? labels_in(answer, scan) : std::vector<int>(scan.mesh.vertices.size(), 0);
     const SegmentationFigures f = segmentation_figures(scan.mesh, labels_in(truth, scan), labels);
-    fmt::print("{:<28}{:>8.4f}{:>8.4f}{:>8.4f}{:>8}{:>8.4f}{:>8.4f} {}\n", path.stem().string(), f.tsa, f.tla, f.tir,
-               fmt::format("{}/{}", f.right(), f.teeth.size()), f.faces_right, f.mean_overlap(), errors_of(f));
+    if (said.wants_words())
+      fmt::print("{:<28}{:>8.4f}{:>8.4f}{:>8.4f}{:>8}{:>8.4f}{:>8.4f} {}\n", path.stem().string(), f.tsa, f.tla, f.tir,
+                 fmt::format("{}/{}", f.right(), f.teeth.size()), f.faces_right, f.mean_overlap(), errors_of(f));
     all.push_back(f);
+    figures.push_back(f);
+    figures.back()["scan"] = path.stem().string();
   }
-  fmt::print("{}", describe(summary_of(all)));
+  const SegmentationSummary summary = summary_of(all);
+  write_output_files(said.print_or_file({{"scans", figures}, {"summary", summary}}));
+  if (said.wants_words()) fmt::print("{}", describe(summary));
 }
 
 }  // namespace rhizodont::command_line

@@ -61,7 +61,8 @@ std::vector<Colour> colours_of(const GeneratedArch& arch) {
   return colours;
 }
 
-void write_sheet(const std::filesystem::path& path, const std::vector<GeneratedArch>& arches) {
+void write_sheet(const std::filesystem::path& path, const std::vector<GeneratedArch>& arches,
+                 const OutputOptions& said) {
   std::vector<RenderItem> items;
   for (const GeneratedArch& arch : arches) {
     const Eigen::Vector3d up = arch.rotation * Eigen::Vector3d(0, arch.jaw == Jaw::upper ? -1 : 1, 0);
@@ -72,7 +73,7 @@ void write_sheet(const std::filesystem::path& path, const std::vector<GeneratedA
   options.height = 400;
   options.views = {"top", "front", "left", "oblique"};
   write_output_files({{path, encode_png(render(items, options))}});
-  fmt::print("{}\n", path.string());
+  said.tell(path.string());
 }
 
 }  // namespace
@@ -92,11 +93,12 @@ void write_arches(const SynthArches& command) {
       write_output_files({{mesh_name, mesh_file_bytes(mesh_name, file)},
                           {command.output / (name + ".json"), teeth3ds_json(arch.fdi, arch.jaw, file)},
                           {command.output / (name + "_drawn.json"), drawn_json(arch, seed)}});
-      fmt::print("{}: {} teeth, {} triangles\n", mesh_name.string(), arch.teeth.size(), arch.scan.triangles.size());
+      command.said.tell(
+          fmt::format("{}: {} teeth, {} triangles", mesh_name.string(), arch.teeth.size(), arch.scan.triangles.size()));
     }
     if (!command.sheet.empty()) for_sheet.push_back(std::move(arch));
   }
-  if (!command.sheet.empty()) write_sheet(command.sheet, for_sheet);
+  if (!command.sheet.empty()) write_sheet(command.sheet, for_sheet, command.said);
 }
 
 }  // namespace rhizodont::command_line

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "command_line/output_options.hpp"
 #include "families/arch_family.hpp"
 
 #include <cstdint>
@@ -17,6 +18,7 @@ struct SynthArches {
   std::uint64_t seed = 0;
   std::string format = "ply";
   ArchDrawOptions options;
+  OutputOptions said;
 };
 
 /// Writes arch_SEED_JAW.ply (or .obj), its labels (arch_SEED_JAW.json, Teeth3DS) and what was drawn

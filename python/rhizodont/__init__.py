@@ -13,6 +13,7 @@ A predicted root is not anatomy: it is typical for such a crown, not the patient
 from . import _core
 from ._core import Error, InputError, NoResultError, OutputError, UsageError
 from .arches import Arch, Clearance, FoundTooth, SegmentedScan, ToothOfArch, complete_arch, segment
+from .evaluation import evaluate, root_figures
 from .mesh import Mesh, load, measure, mesh_of
 from .teeth import (
     PREDICTED,
@@ -52,10 +53,12 @@ __all__ = [
     "check",
     "complete",
     "complete_arch",
+    "evaluate",
     "load",
     "measure",
     "mesh_of",
     "prepare",
+    "root_figures",
     "segment",
     "tooth_options",
 ]

@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Callable, Mapping, Optional, Sequence
 
 import numpy.typing as npt
 
 from . import _core
 from .mesh import Floats, Ints, Mesh, mesh_of, whole_numbers
+from .notebooks import in_frame
 from .teeth import Models, Tooth, tooth_options
 
 ArchProgress = Callable[[int, int, int], None]
@@ -71,6 +72,15 @@ class Arch:
     clearances: list[Clearance]
     gum: Mesh
     notes: list[str]
+    _core: _core.CompletedArch = field(repr=False)
+
+    def page(self) -> str:
+        """All teeth to look at, in three dimensions: HTML in one file. Raises UsageError where the library was built without
+        its pages."""
+        return self._core.page()
+
+    def _repr_html_(self) -> Optional[str]:
+        return in_frame(self.page()) if _core.has_report_pages() else None
 
     def __getitem__(self, fdi: int) -> ToothOfArch:
         for tooth in self.teeth:
@@ -136,15 +146,11 @@ def complete_arch(
         clearance,
         progress,
     )
-    teeth = [
-        ToothOfArch(
-            one["fdi"],
-            Mesh(*one["crown"]),
-            one["scan_vertices"],
-            Tooth(one["tooth"]) if one["tooth"] is not None else None,
-            one["clearance"],
-            one["refusal"],
+    teeth = []
+    for one in done.teeth:
+        crown = Mesh(*one["crown"])
+        tooth_of_crown = Tooth(one["tooth"], crown) if one["tooth"] is not None else None
+        teeth.append(
+            ToothOfArch(one["fdi"], crown, one["scan_vertices"], tooth_of_crown, one["clearance"], one["refusal"])
         )
-        for one in done["teeth"]
-    ]
-    return Arch(teeth, [Clearance(**pair) for pair in done["clearances"]], Mesh(*done["gum"]), done["notes"])
+    return Arch(teeth, [Clearance(**pair) for pair in done.clearances], Mesh(*done.gum), done.notes, done)

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from . import _core
 from .mesh import Floats, Ints, Mesh, PathLike, mesh_of
+from .notebooks import in_frame
 
 Progress = Callable[[str], None]
 
@@ -37,8 +38,10 @@ class Models:
 class Tooth:
     """A whole tooth: the kept crown's vertices and triangles first, bit for bit. The arrays are read-only views."""
 
-    def __init__(self, core: _core.CompletedTooth) -> None:
+    def __init__(self, core: _core.CompletedTooth, crown: Mesh) -> None:
         self._core = core
+        self.crown = crown
+        """As it was given."""
 
     @cached_property
     def mesh(self) -> Mesh:
@@ -107,6 +110,14 @@ class Tooth:
         """Writes .ply (with source and uncertainty), .stl, .obj or .glb. Raises OutputError, UsageError."""
         self._core.save(os.fspath(path))
 
+    def page(self) -> str:
+        """The report to look at, with tooth and crown in three dimensions: HTML in one file. Raises UsageError where the
+        library was built without its pages."""
+        return _core.tooth_page(self._core, self.crown.vertices, self.crown.triangles)
+
+    def _repr_html_(self) -> Optional[str]:
+        return in_frame(self.page()) if _core.has_report_pages() else None
+
     def __repr__(self) -> str:
         return f"<Tooth {self.fdi}: root {self.root_length:.1f} mm, {len(self.vertices)} vertices>"
 
@@ -115,8 +126,9 @@ class PreparedTooth:
     """A crown with all that does not depend on what is wished of the root; `finish` makes a tooth of it in half the
     time of `complete`."""
 
-    def __init__(self, core: _core.PreparedTooth) -> None:
+    def __init__(self, core: _core.PreparedTooth, crown: Mesh) -> None:
         self._core = core
+        self._crown = crown
 
     @property
     def fdi(self) -> int:
@@ -134,7 +146,7 @@ class PreparedTooth:
     ) -> Tooth:
         """root_length, transition: mm; tip, torque, bend: degrees, as in `complete`."""
         options = {"steering": _steering(root_length, tip, torque, bend), "transition_mm": transition}
-        return Tooth(_core.finish(self._core, _json(options), progress))
+        return Tooth(_core.finish(self._core, _json(options), progress), self._crown)
 
 
 def _json(options: dict[str, Any]) -> str:
@@ -201,7 +213,7 @@ def complete(crown: Any, models: Models, *, progress: Optional[Progress] = None,
     ends the work and comes through. Raises InputError, NoResultError, UsageError."""
     of = mesh_of(crown)
     core = _core.complete(of.vertices, of.triangles, models._completion, tooth_options(**options), progress)
-    return Tooth(core)
+    return Tooth(core, of)
 
 
 def prepare(crown: Any, models: Models, *, progress: Optional[Progress] = None, **options: Any) -> PreparedTooth:
@@ -211,7 +223,7 @@ def prepare(crown: Any, models: Models, *, progress: Optional[Progress] = None, 
         raise TypeError(f"{', '.join(sorted(late))}: an option of finish, not of prepare")
     of = mesh_of(crown)
     core = _core.prepare(of.vertices, of.triangles, models._completion, tooth_options(**options), progress)
-    return PreparedTooth(core)
+    return PreparedTooth(core, of)
 
 
 def candidates(
@@ -220,7 +232,7 @@ def candidates(
     """The expected tooth and count - 1 others whose lengths spread over the 80 % interval; count: 1 to 9."""
     of = mesh_of(crown)
     cores = _core.candidates(of.vertices, of.triangles, models._completion, count, tooth_options(**options), progress)
-    return [Tooth(core) for core in cores]
+    return [Tooth(core, of) for core in cores]
 
 
 def check(crown: Any, tooth: Any, *, dropped_vertices: Optional[Iterable[int]] = None) -> dict[str, Any]:

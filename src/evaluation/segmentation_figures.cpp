@@ -194,4 +194,43 @@ std::string describe(const SegmentationSummary& s) {
   return text + "\n";
 }
 
+void to_json(nlohmann::ordered_json& json, const SegmentationFigures& figures) {
+  nlohmann::ordered_json teeth = nlohmann::ordered_json::array();
+  for (const FoundToothFigures& tooth : figures.teeth)
+    teeth.push_back({{"fdi", tooth.fdi},
+                     {"right", tooth.is_right()},
+                     {"overlap", tooth.overlap},
+                     {"most_like", tooth.most_like},
+                     {"most_overlap", tooth.most_overlap}});
+  json = {{"tsa", figures.tsa},
+          {"tla", figures.tla},
+          {"tir", figures.tir},
+          {"faces_right", figures.faces_right},
+          {"faces_wholly_right", figures.faces_wholly_right},
+          {"mean_overlap", figures.mean_overlap()},
+          {"jaw_right", figures.jaw_right},
+          {"teeth", teeth},
+          {"extra", figures.extra}};
+}
+
+void to_json(nlohmann::ordered_json& json, const SegmentationSummary& s) {
+  nlohmann::ordered_json types = nlohmann::ordered_json::object();
+  for (const auto& [type, counts] : s.by_type)
+    types[std::to_string(type)] = {{"teeth", counts.first}, {"right", counts.second}};
+  json = {{"scans", s.scans},
+          {"without_error", s.without_error},
+          {"jaws_right", s.jaws_right},
+          {"teeth", s.teeth},
+          {"right", s.right},
+          {"located", s.located},
+          {"extra", s.extra},
+          {"tsa", s.tsa},
+          {"tla", s.tla},
+          {"tir", s.tir},
+          {"faces_right", s.faces_right},
+          {"faces_wholly_right", s.faces_wholly_right},
+          {"mean_overlap", s.mean_overlap},
+          {"by_type", types}};
+}
+
 }  // namespace rhizodont

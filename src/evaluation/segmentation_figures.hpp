@@ -4,6 +4,8 @@
 
 #include "rhizodont/mesh.hpp"
 
+#include <nlohmann/json.hpp>
+
 #include <cstddef>
 #include <map>
 #include <string>
@@ -64,5 +66,9 @@ SegmentationSummary summary_of(const std::vector<SegmentationFigures>& scans);
 
 /// Some lines of text.
 std::string describe(const SegmentationSummary& summary);
+
+/// For `nlohmann::ordered_json(value)`.
+void to_json(nlohmann::ordered_json& json, const SegmentationFigures& figures);
+void to_json(nlohmann::ordered_json& json, const SegmentationSummary& summary);
 
 }  // namespace rhizodont

@@ -18,7 +18,9 @@ Eigen::Vector3f row(const std::vector<float>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-void append(std::vector<float>& values, const Eigen::Vector3f& v) { values.insert(values.end(), v.begin(), v.end()); }
+void append_to(std::vector<float>& values, const Eigen::Vector3f& v) {
+  values.insert(values.end(), v.begin(), v.end());
+}
 
 Eigen::Vector3f any_direction(RandomStream& random) {
   return Eigen::Vector3d(random.normal(), random.normal(), random.normal()).normalized().cast<float>();
@@ -41,7 +43,7 @@ std::vector<std::size_t> shown_points(const LabelledCloud& scan, const ScanVaria
   if (random.chance(v.trim_share)) {
     std::vector<float> teeth;
     for (std::size_t i = 0; i < n; ++i)
-      if (scan.teeth[i] != 0) append(teeth, row(scan.cloud.positions, i));
+      if (scan.teeth[i] != 0) append_to(teeth, row(scan.cloud.positions, i));
     if (!teeth.empty()) {
       const auto far = static_cast<float>(std::exp(random.uniform(std::log(1.5), std::log(15.0))));
       const CloudGrid grid(teeth, 2);
@@ -114,7 +116,7 @@ void label(ShownScan& shown, const std::vector<std::uint8_t>& teeth, bool mirror
     const Eigen::Vector3f p = row(positions, i);
     Eigen::Vector3f way = Eigen::Vector3f::Zero();
     if (tooth != 0) way = (sums.at(tooth).first / sums.at(tooth).second).cast<float>() - p;
-    append(shown.middles, way / scan_offset_mm);
+    append_to(shown.middles, way / scan_offset_mm);
     bool border = false;
     grid.visit_near(p.data(), scan_border_mm, [&](std::int32_t j) {
       const auto k = static_cast<std::size_t>(j);
@@ -148,9 +150,9 @@ ShownScan varied(const LabelledCloud& scan, const ScanShape& shape, const ScanVa
     const Eigen::Vector3f p = bending(row(scan.cloud.positions, i)).cwiseProduct(stretch);
     const Eigen::Vector3f moved = rotation * disturbed(p, noise);
     mean += moved.cast<double>() / static_cast<double>(points.size());
-    append(cloud.positions, moved);
+    append_to(cloud.positions, moved);
     const Eigen::Vector3f normal = row(scan.cloud.normals, i).cwiseQuotient(stretch).normalized();
-    append(cloud.normals, disturbed(rotation * normal, 2 * noise).normalized());
+    append_to(cloud.normals, disturbed(rotation * normal, 2 * noise).normalized());
     for (std::size_t c = 0; c < scan_curvature_count; ++c)
       cloud.curvatures.push_back(scan.cloud.curvatures[scan_curvature_count * i + c] +
                                  noise * static_cast<float>(random.normal()));

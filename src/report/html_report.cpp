@@ -7,6 +7,7 @@
 #include "report/view_mesh.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/hash.hpp"
+#include "rhizodont/report_page.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -86,8 +87,10 @@ bool is_page_name(const std::filesystem::path& name) {
   return ending == ".html" || ending == ".htm";
 }
 
+bool has_report_pages() { return !report_assets().empty(); }
+
 void require_report_page() {
-  if (report_assets().empty())
+  if (!has_report_pages())
     throw UsageError(
         "This program was built without its pages, for npm or its packages could not be reached: there are reports in "
         "JSON alone.");

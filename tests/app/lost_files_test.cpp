@@ -49,6 +49,8 @@ const std::vector<Output> outputs{
     {"complete crown.stl --fdi 36 --e 2 -o OUT", ".ply", "crown.stl"},
     {"complete crown.stl --fdi 36 --e 2 -o older.ply --report OUT", ".json", "crown.stl"},
     {"complete crown.stl --fdi 36 --e 2 --skirt auto -o older.ply --skirt-confidence OUT", ".ply", "crown.stl"},
+    {"complete crown.stl --fdi 36 --e 2 -o older.ply --json OUT", ".json", "crown.stl"},
+    {"label-skirt crown.stl tooth.ply -o older.ply --json OUT", ".json", "tooth.ply"},
     {"check crown.stl tooth.ply --json OUT", ".json", "tooth.ply"},
     {"measure tooth.ply --json OUT", ".json", "tooth.ply"},
     {"render tooth.ply --width 20 --height 20 -o OUT", ".png", "tooth.ply"},

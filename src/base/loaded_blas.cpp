@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "learning/blas.hpp"
+#include "base/loaded_blas.hpp"
 
 #include <dlfcn.h>
 #include <link.h>
