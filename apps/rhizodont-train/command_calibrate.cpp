@@ -21,7 +21,7 @@ namespace rhizodont::command_line {
 namespace {
 
 struct CalibrateCommand {
-  std::filesystem::path data, models, population, text;
+  std::filesystem::path data, models, population, registered, text;
   PeopleCalibrationOptions options;
 };
 
@@ -36,6 +36,7 @@ void run(const CalibrateCommand& command) {
   require_safe_outputs(files_below(command.data), outputs);
   FamilyLoadOptions population;
   population.population = command.population;
+  population.registered = command.registered;
   const ToothFamilies families = load_tooth_families(command.data, population);
   const CompletionModels models = CompletionModels::load(command.models);
   PeopleCalibrationOptions options = command.options;
@@ -68,6 +69,8 @@ void add_calibrate_command(CLI::App& app) {
   calibrate->add_option(
       "--population", command->population,
       "JSON table of lengths, roots and curves by tooth; without it the middle of published populations");
+  calibrate->add_option("--registered", command->registered,
+                        "Folder of registered teeth (rhizodont register): each is a further template of its type");
   calibrate->add_option("--people", command->options.people, "People, one tooth of each type of each")
       ->capture_default_str();
   calibrate->add_option("--completed", command->options.completed, "Of how many of them teeth are completed as well")
