@@ -19,7 +19,7 @@ namespace {
 
 struct CompletionCommand {
   std::string data;
-  std::string population;
+  std::string population, registered;
   std::string export_to;
   bool overwrite = false;
   CompletionSampleOptions samples;
@@ -31,6 +31,7 @@ void train(const CompletionCommand& command) {
   prepare_for_training();
   FamilyLoadOptions population;
   population.population = command.population;
+  population.registered = command.registered;
   const ToothFamilies families = load_tooth_families(command.data, population);
   CompletionTrainingOptions options = command.options;
   options.loop.progress = progress_of(command.said);
@@ -72,6 +73,8 @@ void add_completion_command(CLI::App& app) {
   train_app->add_option(
       "--population", command->population,
       "JSON table of lengths, roots and curves by tooth; without it the middle of published populations");
+  train_app->add_option("--registered", command->registered,
+                        "Folder of registered teeth (rhizodont register): each is a further template of its type");
   train_app->add_option("--out", o.folder, "Folder of checkpoints and best weights")->required();
   train_app->add_flag("--resume", o.resume, "Go on from the folder's checkpoint");
   train_app->add_option("--start-from", o.start_from,

@@ -8,6 +8,7 @@ namespace rhizodont::command_line {
 
 // One file command_<name>.cpp each, as in ../rhizodont.
 
+void add_calibrate_command(CLI::App& app);
 void add_completion_command(CLI::App& app);
 void add_skirt_command(CLI::App& app);
 void add_likeness_command(CLI::App& app);

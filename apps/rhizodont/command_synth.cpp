@@ -35,7 +35,7 @@ struct SynthCommand {
   std::string output;
   std::string sheet;
   std::string atlas, arch;
-  std::string population;
+  std::string population, registered;
   bool person = false;
   bool crowns = false;
   bool clean_cut = false;
@@ -203,8 +203,9 @@ void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
 SynthArches arches_of(const SynthCommand& command) {
   SynthArches arches{command.data, command.output, command.sheet, command.count, command.seed, command.crown_format,
                      {},           command.said};
-  if (command.person || !command.population.empty())
-    throw UsageError("Scans of arches are made of models of crowns: --person and --population are for teeth.");
+  if (command.person || !command.population.empty() || !command.registered.empty())
+    throw UsageError(
+        "Scans of arches are made of models of crowns: --person, --population and --registered are for teeth.");
   if (command.output.empty() && command.sheet.empty())
     throw UsageError("Say where to: -o FOLDER for arches, --sheet PNG for a picture of them.");
   if (arches.format == "stl")
@@ -238,6 +239,7 @@ void run(const SynthCommand& given) {
   require_safe_places(command);
   FamilyLoadOptions options;
   options.population = command.population;
+  options.registered = command.registered;
   if (command.edge_mm > 0) options.vertices = 20000;  // finer than the scan to be made
   const ToothFamilies families = load_tooth_families(command.data, options);
   if (!command.atlas.empty()) write_atlas(command, families);
@@ -258,6 +260,8 @@ void add_synth_command(CLI::App& app) {
   synth->add_option("--seed", command->seed, "Number of the first; each tooth depends on its number alone")
       ->capture_default_str();
   synth->add_option("-o,--output", command->output, "Folder for tooth_FDI_SEED.ply (and crown_FDI_SEED.ply)");
+  synth->add_option("--registered", command->registered,
+                    "Folder of registered teeth (rhizodont register): each is a further template of its type");
   synth->add_option("--population", command->population,
                     "JSON table of lengths, roots and curves by tooth; without it the middle of published populations");
   synth->add_flag("--person", command->person,

@@ -17,6 +17,7 @@ void add_doctor_command(CLI::App& app);
 void add_evaluate_command(CLI::App& app);
 void add_check_command(CLI::App& app);
 void add_measure_command(CLI::App& app);
+void add_register_command(CLI::App& app);
 void add_render_command(CLI::App& app);
 void add_segment_command(CLI::App& app);
 void add_serve_command(CLI::App& app);

@@ -8,17 +8,14 @@
 // teeth, are what PersonLengthModel states. All lengths go to LENGTHS.csv.
 #include "arch/person_lengths.hpp"
 #include "base/random_stream.hpp"
-#include "completion/registration.hpp"
 #include "completion/uncertainty.hpp"
+#include "evaluation/held_out_people.hpp"
 #include "families/crown_crop.hpp"
 #include "families/person.hpp"
-#include "mesh/geometry.hpp"
 #include "pipeline/models.hpp"
-#include "pipeline/prediction.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/models.hpp"
 #include "teeth/fdi.hpp"
-#include "teeth/prepared_crown.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -44,26 +41,19 @@ struct Length {
 };
 
 /// A generated crown's root as predicted and as it is, both from the crown's lowest point along the same axis.
-std::optional<Length> length_of(const ToothFamilies& families, const CompletionModels::Content& models, int fdi,
+std::optional<Length> length_of(const ToothFamilies& families, const CompletionModels& models, int fdi,
                                 const PersonDraw& person) {
   constexpr double paper_share = 0.15, gap_probability = 0.35, half_of_80_percent = 1.2816;
   try {
     const SyntheticTooth tooth = generate_tooth_of_person(families, fdi, person);
     RandomStream random(person.seed, static_cast<std::uint64_t>(fdi));
     const TriangleMesh crown = draw_cropped_crown(tooth, paper_share, gap_probability, random).mesh;
-    const int type = tooth_type_of_fdi(fdi), left = fdi_of_type(type, false);  // right teeth are made as left ones
-    const CrownFrame frame =
-        canonical_frame(prepare_crown(crown), left, models.atlas.types[static_cast<std::size_t>(type)]);
-    const RootPrediction predicted =
-        predict_tooth(crown, left, frame, models, [](const RootPrediction&) { return true; });
-    const Eigen::Vector3d axis = frame.frame.direction_to_world(Eigen::Vector3d::UnitZ());
-    const double lowest = extent_along(crown.vertices, axis).first;
-    const double length = lowest - extent_along(predicted.tooth.cloud.points, axis).first;
-    const auto scales = uncertainty_scales(models.network.metadata());
+    const int left = fdi_of_type(tooth_type_of_fdi(fdi), false);  // right teeth are made as left ones
+    const RootOutcome root = predicted_root(crown, tooth.mesh, left, models).outcome;
+    const auto scales = uncertainty_scales(content_of(models)->network.metadata(), left);
     if (!scales) return std::nullopt;
-    const auto [low, high] = length_interval(length, expected_distance_at_apex(predicted.tooth, axis), *scales);
-    const double truth = lowest - extent_along(tooth.mesh.vertices, axis).first;
-    return Length{{length, (high - low) / (2 * half_of_80_percent)}, truth};
+    const auto [low, high] = length_interval(root.length_mm, root.expected_distance_mm, *scales);
+    return Length{{root.length_mm, (high - low) / (2 * half_of_80_percent)}, root.true_length_mm};
   } catch (const Error&) {
     return std::nullopt;
   }
@@ -71,7 +61,7 @@ std::optional<Length> length_of(const ToothFamilies& families, const CompletionM
 
 using Person = std::map<int, Length>;
 
-std::vector<Person> people(const ToothFamilies& families, const CompletionModels::Content& models, std::size_t count) {
+std::vector<Person> people(const ToothFamilies& families, const CompletionModels& models, std::size_t count) {
   std::vector<int> teeth;
   for (const int quadrant : {1, 2, 3, 4})
     for (int place = 1; place <= 7; ++place) teeth.push_back(10 * quadrant + place);
@@ -168,7 +158,7 @@ int main(int count, char** words) {
   }
   const std::size_t number = count > 2 ? std::strtoul(words[2], nullptr, 10) : 20;
   const std::vector<Person> all =
-      people(load_tooth_families(words[1]), *content_of(CompletionModels::load(default_models_folder())), number);
+      people(load_tooth_families(words[1]), CompletionModels::load(default_models_folder()), number);
   if (count > 3) write_lengths(all, words[3]);
   std::size_t teeth = 0;
   for (const Person& person : all) teeth += person.size();

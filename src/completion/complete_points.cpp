@@ -5,6 +5,8 @@
 // 3.3, with the network in millimetres of the crown's own frame.
 #include "completion/complete_points.hpp"
 
+#include "completion/root_length_correction.hpp"
+#include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
 #include "networks/completion_shape.hpp"
 #include "teeth/fdi.hpp"
@@ -30,6 +32,9 @@ PredictedTooth complete_points(const TriangleMesh& crown, int fdi, const CrownFr
     tooth.cloud.normals.push_back(frame.direction_to_world(completed.normals[i].cast<double>()).normalized());
     tooth.expected_distance.push_back(frame.scale * static_cast<double>(completed.spread[i]));
   }
+  const Eigen::Vector3d axis = frame.direction_to_world(Eigen::Vector3d::UnitZ());
+  lengthen_root(tooth.cloud, axis, extent_along(crown.vertices, axis).first,
+                root_length_correction(network.metadata(), fdi));
   return tooth;
 }
 

@@ -14,7 +14,8 @@ struct PredictedTooth {
   std::vector<double> expected_distance;  ///< mm, > 0, per point: how far from its true place it is, on average
 };
 
-/// Points of the whole tooth that belongs to a crown, as the completion network sees it (paper, section 3.3).
+/// Points of the whole tooth that belongs to a crown, as the completion network sees it (paper, section 3.3); the root
+/// longer or shorter by what its weights say of the tooth's type (root_length_correction.hpp).
 /// @param crown    open crown, millimetres; any size and density of triangles
 /// @param fdi      FDI number; 0 where it is not known
 /// @param frame    the crown's canonical frame: the side and pose that the network works in, and the axis of its form

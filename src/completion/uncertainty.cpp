@@ -5,10 +5,12 @@
 // whose widths follow a predicted error and whose scale is a quantile on held-out samples.
 #include "completion/uncertainty.hpp"
 
+#include "completion/type_table.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/root_steering.hpp"
+#include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -29,9 +31,11 @@ constexpr std::array<std::pair<const char*, double UncertaintyScales::*>, 4> fie
     {"uncertainty.surface", &UncertaintyScales::surface},
 }};
 
+constexpr const char* types_key = "uncertainty.types";
+
 }  // namespace
 
-std::optional<UncertaintyScales> uncertainty_scales(const std::map<std::string, std::string>& metadata) {
+std::optional<UncertaintyScales> uncertainty_scales(const std::map<std::string, std::string>& metadata, int fdi) {
   UncertaintyScales scales;
   for (const auto& [name, member] : fields) {
     const auto found = metadata.find(name);
@@ -42,11 +46,22 @@ std::optional<UncertaintyScales> uncertainty_scales(const std::map<std::string, 
       throw InputError(fmt::format("The weight file's {} is not a number.", name));
     }
   }
-  return scales;
+  const auto types = metadata.find(types_key);
+  if (types == metadata.end() || !is_permanent_tooth(fdi)) return scales;
+  const TypeTable table = read_type_table(types->second, 3, types_key);
+  const auto entry = table.find(fdi_of_type(tooth_type_of_fdi(fdi), false));
+  if (entry == table.end()) return scales;
+  return UncertaintyScales{entry->second[0], entry->second[1], entry->second[2], scales.surface};
 }
 
-void note_uncertainty_scales(const UncertaintyScales& scales, std::map<std::string, std::string>& metadata) {
+void note_uncertainty_scales(const UncertaintyScales& scales, std::map<std::string, std::string>& metadata,
+                             const std::map<int, UncertaintyScales>& by_tooth) {
   for (const auto& [name, member] : fields) metadata[name] = fmt::format("{:.4f}", scales.*member);
+  metadata.erase(types_key);
+  if (by_tooth.empty()) return;
+  TypeTable table;
+  for (const auto& [fdi, of_type] : by_tooth) table[fdi] = {of_type.length_low, of_type.length_high, of_type.apex};
+  metadata[types_key] = type_table_text(table);
 }
 
 double expected_distance_at_apex(const PredictedTooth& predicted, const Eigen::Vector3d& growth_axis) {

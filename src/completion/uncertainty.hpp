@@ -24,11 +24,14 @@ struct UncertaintyScales {
   double surface = 0;      ///< mean distance of new vertices from the true surface / their mean expected distance
 };
 
-/// Reads them from a weight file's metadata; nothing if the weights were never calibrated. Throws InputError if they
+/// Reads them from a weight file's metadata: those of the type of a permanent tooth (FDI number) where they were
+/// measured, else those of all teeth together; nothing if the weights were never calibrated. Throws InputError if they
 /// cannot be read as numbers.
-std::optional<UncertaintyScales> uncertainty_scales(const std::map<std::string, std::string>& metadata);
-/// Adds them to a weight file's metadata.
-void note_uncertainty_scales(const UncertaintyScales& scales, std::map<std::string, std::string>& metadata);
+std::optional<UncertaintyScales> uncertainty_scales(const std::map<std::string, std::string>& metadata, int fdi = 0);
+/// Adds them to a weight file's metadata: those of all teeth, and of types by the FDI number of their left tooth, whose
+/// `surface` is that of all. What types were there before is taken away.
+void note_uncertainty_scales(const UncertaintyScales& scales, std::map<std::string, std::string>& metadata,
+                             const std::map<int, UncertaintyScales>& by_tooth = {});
 
 /// Expected distance from their places, mm, of the predicted points that lie deepest along the growth axis: the mean
 /// over 16 of them. Precondition: at least 16 points; growth_axis is a unit vector from root to crown.

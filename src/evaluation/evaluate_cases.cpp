@@ -74,13 +74,19 @@ UncertaintyFigures uncertainty_figures(const ToothPrediction& tooth, const Trian
   return result;
 }
 
-CaseOutcome evaluate(const NamedPredictor& predictor, int fdi, const TriangleMesh& crown, const TriangleMesh& truth,
-                     const RootFigureOptions& options) {
+}  // namespace
+
+ToothPrediction prediction_of(const CompletedTooth& tooth) {
+  return {tooth.mesh, tooth.record.root.interval, tooth.record.root.apex_expected_distance_mm, tooth.uncertainty};
+}
+
+CaseOutcome evaluate_case(const ToothPredictor& predict, int fdi, const TriangleMesh& crown, const TriangleMesh& truth,
+                          const RootFigureOptions& options) {
   CaseOutcome outcome;
   try {
     const Eigen::Vector3d axis = crown_growth_axis(crown);
     const Stopwatch watch;
-    const ToothPrediction tooth = predictor.predict(crown, fdi);
+    const ToothPrediction tooth = predict(crown, fdi);
     outcome.seconds = watch.seconds();
     outcome.figures = root_figures(crown, truth, tooth.mesh, axis, options);
     if (!tooth.uncertainty.empty()) outcome.uncertainty = uncertainty_figures(tooth, truth, *outcome.figures);
@@ -90,12 +96,6 @@ CaseOutcome evaluate(const NamedPredictor& predictor, int fdi, const TriangleMes
     outcome.failure = error.what();
   }
   return outcome;
-}
-
-}  // namespace
-
-ToothPrediction prediction_of(const CompletedTooth& tooth) {
-  return {tooth.mesh, tooth.record.root.interval, tooth.record.root.apex_expected_distance_mm, tooth.uncertainty};
 }
 
 std::vector<EvaluationCase> find_evaluation_cases(const std::filesystem::path& folder) {
@@ -138,7 +138,7 @@ Evaluation evaluate_cases(const std::vector<EvaluationCase>& cases, const std::v
         continue;
       }
       if (progress) progress(cases[i], i, predictor.name);
-      evaluated.outcomes.push_back(evaluate(predictor, cases[i].fdi, crown, truth, options));
+      evaluated.outcomes.push_back(evaluate_case(predictor.predict, cases[i].fdi, crown, truth, options));
     }
     evaluation.cases.push_back(std::move(evaluated));
   }

@@ -67,6 +67,11 @@ struct CaseOutcome {
   double seconds = 0;                             ///< of the prediction alone
 };
 
+/// Has one crown (mm, open) completed and compares the tooth with the true one. The axis is that of the crown's border.
+/// Whatever goes wrong becomes the outcome's failure, but for UsageError, which is passed on.
+CaseOutcome evaluate_case(const ToothPredictor& predict, int fdi, const TriangleMesh& crown, const TriangleMesh& truth,
+                          const RootFigureOptions& options = {});
+
 struct EvaluatedCase {
   EvaluationCase files;
   std::vector<CaseOutcome> outcomes;  ///< one per predictor
@@ -84,9 +89,8 @@ struct Evaluation {
 using EvaluationProgress =
     std::function<void(const EvaluationCase& files, std::size_t place, const std::string& predictor)>;
 
-/// Has every predictor complete every crown, one after the other, and compares each tooth with the true one. The axis
-/// is that of the crown's border. Whatever a predictor or a file does wrong becomes the outcome's failure, but for
-/// UsageError, which is passed on. Throws UsageError for an option out of range.
+/// `evaluate_case` of every predictor and every crown, one after the other. Whatever a predictor or a file does wrong
+/// becomes the outcome's failure, but for UsageError, which is passed on. Throws UsageError for an option out of range.
 Evaluation evaluate_cases(const std::vector<EvaluationCase>& cases, const std::vector<NamedPredictor>& predictors,
                           const RootFigureOptions& options = {}, const EvaluationProgress& progress = {});
 

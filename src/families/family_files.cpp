@@ -6,6 +6,8 @@
 #include "completion/registration.hpp"
 #include "families/arch_directions.hpp"
 #include "families/mean_teeth.hpp"
+#include "families/register_tooth.hpp"
+#include "families/registered_templates.hpp"
 #include "families/self_crossing.hpp"
 #include "families/tooth_family.hpp"
 #include "families/tooth_template.hpp"
@@ -115,7 +117,7 @@ TriangleMesh enamel(const FamilyTemplate& tooth) {
 }
 
 std::vector<Point> usual_crown(const ToothFamilies& families, const TemplateLoan& loan) {
-  std::vector<Point> vertices = families.templates[static_cast<std::size_t>(loan.from)].mesh.vertices;
+  std::vector<Point> vertices = template_of(families, loan.from).mesh.vertices;
   constexpr double models_per_pair = 2;  // left and right
   for (const FamilyCrownModel& model : families.crown_models) {
     if (model.type != loan.type || model.from != loan.from) continue;
@@ -132,7 +134,7 @@ void measure_turns(ToothFamilies& families) {
     TemplateLoan& loan = families.loans[i];
     const FamilyTemplate& own = families.templates[static_cast<std::size_t>(loan.type)];
     const TriangleMesh goal = enamel(own);
-    TriangleMesh borrowed = enamel(families.templates[static_cast<std::size_t>(loan.from)]);
+    TriangleMesh borrowed = enamel(template_of(families, loan.from));
     loan.crown = usual_crown(families, loan);
     borrowed.vertices = loan.crown;
     CanonicalFrame upright;
@@ -151,6 +153,25 @@ void measure_turns(ToothFamilies& families) {
                       (Eigen::AngleAxisd(loan.turn, Eigen::Vector3d::UnitZ()) *
                        families.crown_axes[static_cast<std::size_t>(loan.type)]);
   });
+}
+
+// Registered teeth beside their types' own templates, each as likely as these.
+void add_registered(ToothFamilies& families, const FamilyLoadOptions& options, const std::vector<int>& wanted,
+                    const std::array<TemplateFile, tooth_type_count>& files,
+                    const std::array<Eigen::Vector3d, tooth_type_count>& buccal) {
+  for (const int type : wanted) {
+    const auto t = static_cast<std::size_t>(type);
+    std::vector<FamilyTemplate> teeth =
+        load_registered_teeth(options.registered, type, files[t], buccal[t], options.vertices);
+    double own = 1;
+    for (const TemplateLoan& loan : families.loans)
+      if (loan.type == type) own -= loan.share;
+    for (FamilyTemplate& tooth : teeth) {
+      const int from = tooth_type_count + static_cast<int>(families.further.size());
+      families.loans.push_back({type, from, own / static_cast<double>(teeth.size() + 1)});
+      families.further.push_back(std::move(tooth));
+    }
+  }
 }
 
 // How far templates are brought towards the mean crown of their type's model: most of the way; what is left of their
@@ -206,7 +227,7 @@ class CrownModelLoader {
     }
     pairs.clear();
     for (const TemplateLoan& loan : families_.loans) {
-      if (loan.type % 8 != 7) {
+      if (loan.type % 8 != 7 || loan.from >= tooth_type_count) {
         pairs.emplace_back(loan.type, loan.from);
         continue;
       }
@@ -234,8 +255,9 @@ class CrownModelLoader {
       result.type = type;
       result.from = from;
       result.usual_share = type % 8 == 7 ? 0.0 : type == from ? template_share : 0.9;
-      result.modes = carry_crown_model(families_.templates[static_cast<std::size_t>(from)], model,
-                                       buccal_[static_cast<std::size_t>(from)], type < 8);
+      const int place = from < tooth_type_count ? from : type;  // a further template stands as its type's own
+      result.modes =
+          carry_crown_model(template_of(families_, from), model, buccal_[static_cast<std::size_t>(place)], type < 8);
     });
     for (FamilyCrownModel& model : added) families_.crown_models.push_back(std::move(model));
   }
@@ -253,25 +275,14 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
                                         {"crown_modes", options.crown_modes, OptionRange::at_least(0).at_most(40)}});
   for (const int type : options.types)
     require_ranges("the tooth families", {{"types", type, OptionRange::at_least(0).below(tooth_type_count)}});
-  constexpr double usual_crown_share = 0.38;
   ToothFamilies families;
   families.population = options.population.empty() ? default_population() : load_population(options.population);
   families.dimensions = read_dimensions(folder / "anatomy.csv");
   for (std::size_t type = 0; type < families.dimensions.size(); ++type)
     families.dimensions[type].root_length = families.population.teeth[type].root_length_mm;
-  std::array<MeshFile, tooth_type_count> files;
-  std::array<std::vector<std::uint8_t>, tooth_type_count> crowns;
-  std::vector<Eigen::Vector3d> centres(tooth_type_count);
-  tbb::parallel_for(0, tooth_type_count, [&](int type) {
-    const auto t = static_cast<std::size_t>(type);
-    const int fdi = fdi_of_type(type, false);
-    files[t] = load_mesh(folder / "templates" / ("tooth_" + std::to_string(fdi) + ".ply"));
-    const auto attribute = files[t].vertex_attributes.find("crown");
-    crowns[t] = crown_labels(
-        files[t].mesh, attribute == files[t].vertex_attributes.end() ? std::vector<double>{} : attribute->second.values,
-        usual_crown_share);
-    centres[t] = crown_centre(files[t].mesh, crowns[t]);
-  });
+  const std::array<TemplateFile, tooth_type_count> files = load_template_files(folder);
+  std::vector<Eigen::Vector3d> centres;
+  for (const TemplateFile& file : files) centres.push_back(crown_centre(file.mesh, file.crown));
 
   std::vector<int> wanted = options.types;
   if (wanted.empty()) {
@@ -287,12 +298,13 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
     std::sort(arch.begin(), arch.end(), [](const auto& a, const auto& b) { return a.z() - a.x() > b.z() - b.x(); });
     const auto at = std::find(arch.begin(), arch.end(), centres[t]) - arch.begin();
     buccal[t] = buccal_direction(arch, static_cast<std::size_t>(at));
-    families.templates[t] = analyse_template(files[t].mesh, crowns[t], buccal[t], options.vertices);
+    families.templates[t] = analyse_template(files[t].mesh, files[t].crown, buccal[t], options.vertices);
   });
   for (const TemplateLoan& loan : possible_loans(families.population)) {
     const auto loaded = [&wanted](int type) { return std::find(wanted.begin(), wanted.end(), type) != wanted.end(); };
     if (loaded(loan.type) && loaded(loan.from)) families.loans.push_back(loan);
   }
+  if (!options.registered.empty()) add_registered(families, options, wanted, files, buccal);
   CrownModelLoader(families, folder / "crowns" / "ssm", options.crown_modes, buccal).load(wanted);
   families.crown_axes.fill(Eigen::Vector3d::UnitZ());
   tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {

@@ -131,7 +131,7 @@ SyntheticTooth grow_tooth(const ToothFamilies& families, int type, const Templat
                           const ToothVariation& variation, const SharedDraws& shared, RandomStream& random) {
   const int from = loan.from;
   const ToothPopulation& people = families.population.teeth[static_cast<std::size_t>(type)];
-  const FamilyTemplate& source = families.templates[static_cast<std::size_t>(from)];
+  const FamilyTemplate& source = template_of(families, from);
   const ToothDimensions& mean = families.dimensions[static_cast<std::size_t>(type)];
   const ToothShape shape = draw_shape(source, mean, type, people, variation, shared, random);
   // Small teeth would be bent out of shape by what large ones bear.
@@ -141,7 +141,7 @@ SyntheticTooth grow_tooth(const ToothFamilies& families, int type, const Templat
   const Waves fine(random, 8, 2.5, 6.0, 0.35 * warp);
   SyntheticTooth tooth;
   tooth.type = type;
-  tooth.own_template = type == from;
+  tooth.own_template = type == from || from >= tooth_type_count;
   tooth.mesh = source.mesh;
   tooth.crown = source.crown;
   tooth.root = source.root;
@@ -169,6 +169,11 @@ void require_type(const ToothFamilies& families, int type) {
 
 }  // namespace
 
+const FamilyTemplate& template_of(const ToothFamilies& families, int from) {
+  return from < tooth_type_count ? families.templates[static_cast<std::size_t>(from)]
+                                 : families.further[static_cast<std::size_t>(from - tooth_type_count)];
+}
+
 ToothVariation no_variation() {
   ToothVariation none;
   none.crown_modes = none.crown_mean = none.size = none.proportion = none.crown_height = 0;
@@ -188,7 +193,7 @@ std::optional<SyntheticTooth> draw_tooth(const ToothFamilies& families, int type
   const TemplateLoan own = own_template(families, type);
   const TemplateLoan& loan = choose_template(type, random, families, own);
   SyntheticTooth tooth = grow_tooth(families, type, loan, variation, shared, random);
-  if (!is_sound(families.templates[static_cast<std::size_t>(loan.from)], tooth)) return std::nullopt;
+  if (!is_sound(template_of(families, loan.from), tooth)) return std::nullopt;
   return tooth;
 }
 

@@ -57,11 +57,12 @@ struct ToothDimensions {
   double crown_buccolingual = 0;
 };
 
-/// A template that stands in for another type.
+/// A template that stands in for another type, or beside a type's own.
 struct TemplateLoan {
-  int type = 0, from = 0;  ///< types 0..15: grown as, template of
-  double share = 0;        ///< of that type's teeth, 0..1
-  double turn = 0;         ///< rotation about z (radians) that `crown` has against the type's own
+  int type = 0;      ///< 0..15: grown as
+  int from = 0;      ///< template of that type, 0..15; from 16 on the further templates (ToothFamilies::further)
+  double share = 0;  ///< of that type's teeth, 0..1
+  double turn = 0;   ///< rotation about z (radians) that `crown` has against the type's own
   /// The borrowed template's vertices with its crown in the form of the type's mean, as far as there are models of it.
   std::vector<Point> crown = {};
   /// Growth axis of the type's mean crown where it lies on `crown`, unit.
@@ -70,7 +71,7 @@ struct TemplateLoan {
 
 /// A statistical crown model on the template that a type is grown from.
 struct FamilyCrownModel {
-  int type = 0, from = 0;     ///< types 0..15: grown as, template of
+  int type = 0, from = 0;     ///< grown as, template of: see TemplateLoan
   double usual_share = 1;     ///< part of modes.mean_shift that a tooth of the type has on average
   double template_share = 0;  ///< part that the template has already
   CrownModes modes;
@@ -80,6 +81,9 @@ struct FamilyCrownModel {
 struct ToothFamilies {
   /// Brought towards the mean crown of their type's statistical model, where there is one.
   std::array<FamilyTemplate, tooth_type_count> templates;
+  /// Registered teeth of people (register_tooth.hpp): triangles and places of their type's own template, each as likely
+  /// as that.
+  std::vector<FamilyTemplate> further;
   std::array<ToothDimensions, tooth_type_count> dimensions;
   /// Now and then a type is grown from a neighbour's template.
   std::vector<TemplateLoan> loans;
@@ -90,12 +94,16 @@ struct ToothFamilies {
   Population population;  ///< whose teeth these are
 };
 
+/// Number `from` of the families' templates: see TemplateLoan.
+const FamilyTemplate& template_of(const ToothFamilies& families, int from);
+
 /// Options of load_tooth_families.
 struct FamilyLoadOptions {
   std::size_t vertices = 5000;            ///< vertices per template after simplification, >= 500
   std::vector<int> types;                 ///< types 0..15 to load; empty: all
   std::size_t crown_modes = 24;           ///< modes of the statistical crown models, 0..40; 0: do without these models
   std::filesystem::path population = {};  ///< another table (population.hpp); empty: the middle of published ones
+  std::filesystem::path registered = {};  ///< folder of registered teeth (registered_templates.hpp); empty: none
 };
 
 /// Reads folder/templates/tooth_FDI.ply (21-28, 31-38; per-vertex `crown`: 1 enamel, 0 cementum, 255 unlabelled) and
@@ -103,7 +111,8 @@ struct FamilyLoadOptions {
 /// If there is a folder/crowns/ssm with crown_ssm_FDI.safetensors (x1-x7 of all quadrants; see CrownShapeModel), these
 /// are registered to the templates.
 /// Throws InputError if a file is missing or damaged or a template is not a closed surface of genus 0, NoResultError if
-/// a type's mean crown cannot be cut from its template; as load_population for another table.
+/// a type's mean crown cannot be cut from its template; as load_population for another table and
+/// load_registered_teeth for registered ones.
 ToothFamilies load_tooth_families(const std::filesystem::path& folder, const FamilyLoadOptions& options = {});
 
 /// How generated teeth vary: factors on what the population says of a type (population.hpp), and standard deviations of
@@ -154,7 +163,8 @@ struct SyntheticTooth {
   JunctionHeight junction;               ///< height of the cemento-enamel junction
   double crown_turn = 0;                ///< rotation about z (radians) that the crown has against the type's mean crown
   Eigen::Vector3d crown_axis{0, 0, 1};  ///< unit: growth axis of the type's mean crown where it lies on this one
-  bool own_template = true;             ///< grown from the type's own template: same triangles and places as its others
+  bool own_template = true;             ///< grown from the type's own template or a tooth registered to it: same
+                                        ///< triangles and places as its others
   std::vector<Point> apices;            ///< tips of the roots
   std::vector<Eigen::Vector3d> root_axes;  ///< unit, from each root's tip to its middle where it branches off
   double crown_height = 0;                 ///< top above the junction's mean height

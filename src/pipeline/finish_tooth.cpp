@@ -80,7 +80,7 @@ void note_uncertainty(const PreparedCrown& crown, const TriangleMesh& tooth, con
   CompletionRecord& record = completed.record;
   completed.uncertainty = expected_distances(tooth, crown, predicted, GuidingCloudOptions().correction_reach);
   record.root.apex_expected_distance_mm = expected_distance_at_apex(predicted, growth_axis);
-  const std::optional<UncertaintyScales> scales = uncertainty_scales(record.model);
+  const std::optional<UncertaintyScales> scales = uncertainty_scales(record.model, record.fdi);
   if (!scales) return;
   for (double& u : completed.uncertainty) u *= scales->surface;
   if (steering.any()) return;

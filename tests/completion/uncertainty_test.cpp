@@ -66,6 +66,21 @@ TEST(Uncertainty, ScalesGoThroughTheWeightFile) {
   EXPECT_EQ(scales->length_high, 0.75);
   EXPECT_EQ(scales->apex, 1.5);
   EXPECT_EQ(scales->surface, 0.4);
+  note_uncertainty_scales({-1.25, 0.75, 1.5, 0.4}, metadata, {{24, {-1, 2, 3, 9}}});
+  const auto upper_4 = uncertainty_scales(metadata, 14), upper_5 = uncertainty_scales(metadata, 15);
+  ASSERT_TRUE(upper_4 && upper_5);
+  EXPECT_EQ(upper_4->length_low, -1) << "left and right are one type";
+  EXPECT_EQ(upper_4->length_high, 2);
+  EXPECT_EQ(upper_4->apex, 3);
+  EXPECT_EQ(upper_4->surface, 0.4) << "that of all teeth";
+  EXPECT_EQ(upper_5->apex, 1.5) << "no scales of its own";
+  EXPECT_EQ(uncertainty_scales(metadata)->apex, 1.5);
+  note_uncertainty_scales({-1.25, 0.75, 1.5, 0.4}, metadata);
+  EXPECT_EQ(uncertainty_scales(metadata, 14)->apex, 1.5) << "what types had before is gone";
+  metadata["uncertainty.types"] = "1; 24 -1 2";
+  EXPECT_THROW(uncertainty_scales(metadata, 24), InputError);
+  metadata["uncertainty.types"] = "2; 24 -1 2 3";
+  EXPECT_THROW(uncertainty_scales(metadata, 24), InputError);
   metadata["uncertainty.apex"] = "much";
   EXPECT_THROW(uncertainty_scales(metadata), InputError);
 }

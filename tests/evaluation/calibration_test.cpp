@@ -56,6 +56,42 @@ TEST(Calibration, DoesNotDependOnTheScalesBefore) {
   EXPECT_NEAR(one.surface, other.surface, 1e-12);
 }
 
+/// Roots of a type whose errors have another deviation and bias than those of the next.
+std::vector<RootOutcome> roots_of(int fdi, double deviation, double bias, int count, unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<RootOutcome> roots;
+  for (int i = 0; i < count; ++i) {
+    const double truth = 13 + normal(random);
+    roots.push_back({fdi, truth + bias + deviation * normal(random), truth, std::abs(deviation * normal(random)), 1});
+  }
+  return roots;
+}
+
+TEST(Calibration, HoldsFourFifthsOfEachType) {
+  const auto of_two = [](unsigned seed) {
+    std::vector<RootOutcome> roots = roots_of(11, 0.5, 0.3, 2000, seed);
+    const std::vector<RootOutcome> others = roots_of(36, 2, -0.5, 2000, seed + 1);
+    roots.insert(roots.end(), others.begin(), others.end());
+    return roots;
+  };
+  const std::vector<RootOutcome> learned = of_two(1), fresh = of_two(3);
+  std::map<std::string, std::string> together, by_type;
+  note_uncertainty_scales(interval_scales(learned, 1), together);
+  note_uncertainty_scales(interval_scales(learned, 1), by_type, interval_scales_by_type(learned, 1));
+  for (const int fdi : {11, 36}) {
+    std::vector<RootOutcome> of_type;
+    for (const RootOutcome& root : fresh)
+      if (root.fdi == fdi) of_type.push_back(root);
+    EXPECT_GT(std::abs(coverage(of_type, together).length - 0.8), 0.05) << "one scale cannot suit both";
+    const Coverage held = coverage(of_type, by_type);
+    EXPECT_EQ(held.teeth, 2000);
+    EXPECT_NEAR(held.length, 0.8, 0.03) << fdi;
+    EXPECT_NEAR(held.apex, 0.8, 0.03) << fdi;
+  }
+  EXPECT_TRUE(interval_scales_by_type(roots_of(11, 1, 0, 49, 5), 1).empty()) << "too few for scales of their own";
+}
+
 TEST(Calibration, NeedsTeethThatSayHowSureTheyAre) {
   EXPECT_THROW(calibrate(made_up(19, 4, {0, 0, 0, 1}), 0, {0, 0, 0, 1}), UsageError);
   Evaluation silent = made_up(50, 4, {0, 0, 0, 1});
