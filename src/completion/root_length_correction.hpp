@@ -12,10 +12,10 @@
 
 namespace rhizodont {
 
-/// By how many millimetres the network's roots of a type are to be made longer, so that they are neither too long nor
-/// too short on average over generated people; measured after training and kept in the weight file's metadata. 0 where
-/// the file says nothing of the type, and for a number that is no permanent tooth's. Throws InputError for an entry
-/// that cannot be read.
+/// By how many millimetres the network's roots of a type are to be made longer, so that half of them are too long and
+/// half too short over generated people; measured after training and kept in the weight file's metadata. 0 where the
+/// file says nothing of the type, and for a number that is no permanent tooth's. Throws InputError for an entry that
+/// cannot be read.
 double root_length_correction(const std::map<std::string, std::string>& metadata, int fdi);
 
 /// Adds them to a weight file's metadata, by the FDI number of the type's left tooth, and takes away those that were

@@ -153,14 +153,13 @@ PeopleCalibration calibrate_on_people(const ToothFamilies& families, const Compl
   compare_with_whole(all, uncertainty_scales(metadata).value_or(UncertaintyScales{0, 0, 0, 1}).surface, result);
   const std::vector<PredictedRoot> uncorrected = uncorrected_roots(all, result, metadata);
   result.predicted = uncorrected.size();
-  std::map<int, double> errors, counts;
-  for (const PredictedRoot& root : uncorrected) {
-    errors[root.outcome.fdi] += root.outcome.length_mm - root.outcome.true_length_mm;
-    counts[root.outcome.fdi] += 1;
-  }
-  for (const auto& [fdi, sum] : errors) {
-    const double bias = result.bias_mm[fdi] = sum / counts[fdi];
-    if (std::abs(bias) > options.largest_bias_mm) result.correction_mm[fdi] = -bias;
+  std::map<int, std::vector<double>> errors;
+  for (const PredictedRoot& root : uncorrected)
+    errors[root.outcome.fdi].push_back(root.outcome.length_mm - root.outcome.true_length_mm);
+  for (const auto& [fdi, of_type] : errors) {
+    result.bias_mm[fdi] = std::accumulate(of_type.begin(), of_type.end(), 0.0) / static_cast<double>(of_type.size());
+    const double middle = result.median_bias_mm[fdi] = median(of_type);
+    if (std::abs(middle) > options.largest_bias_mm) result.correction_mm[fdi] = -middle;
   }
   std::vector<RootOutcome> roots;
   for (const PredictedRoot& root : uncorrected) {
@@ -184,18 +183,19 @@ std::string calibration_text(const PeopleCalibration& calibration) {
       "Scales of the intervals (`uncertainty.*` and `root_length.correction_mm` in the file's metadata) come from {} "
       "teeth of generated people that were never trained on, {} of them completed: `rhizodont-train calibrate`. "
       "Bounds are in units of what the network expects of its deepest points.\n\n"
-      "| tooth | surface longer than points, mm | bias of lengths before, mm | corrected by, mm | length, lower and "
-      "upper bound | apex |\n|---|---|---|---|---|---|\n",
+      "| tooth | surface longer than points, mm | lengths off before, mean, mm | median, mm | corrected by, mm | "
+      "length, "
+      "lower and upper bound | apex |\n|---|---|---|---|---|---|---|\n",
       calibration.predicted, calibration.completed);
-  const auto row = [&](const std::string& name, double longer, double bias, double corrected,
+  const auto row = [&](const std::string& name, double longer, double bias, double middle, double corrected,
                        const UncertaintyScales& scales) {
-    text += fmt::format("| {} | {:+.2f} | {:+.2f} | {:+.2f} | {:+.2f} to {:+.2f} | {:.2f} |\n", name, longer, bias,
-                        corrected, scales.length_low, scales.length_high, scales.apex);
+    text += fmt::format("| {} | {:+.2f} | {:+.2f} | {:+.2f} | {:+.2f} | {:+.2f} to {:+.2f} | {:.2f} |\n", name, longer,
+                        bias, middle, corrected, scales.length_low, scales.length_high, scales.apex);
   };
   for (const auto& [fdi, bias] : calibration.bias_mm) {
     const auto corrected = calibration.correction_mm.find(fdi);
     const auto scales = calibration.types.find(fdi);
-    row(std::to_string(fdi), calibration.surface_longer_mm.at(fdi), bias,
+    row(std::to_string(fdi), calibration.surface_longer_mm.at(fdi), bias, calibration.median_bias_mm.at(fdi),
         corrected == calibration.correction_mm.end() ? 0 : corrected->second,
         scales == calibration.types.end() ? calibration.all : scales->second);
   }
