@@ -20,7 +20,7 @@ struct FilledMesh {
 FilledMesh fill_holes(const TriangleMesh& mesh);
 
 /// The same; where those triangles meet the mesh or each other, holes are filled anew with others that do not
-/// (clear_filling). Where none are found they stay as they are. Precondition, too: the mesh does not cut itself.
+/// (clear_filling). Where none are found they stay as they are.
 FilledMesh fill_holes_clear(const TriangleMesh& mesh);
 
 }  // namespace rhizodont

@@ -301,6 +301,7 @@ std::set<int> cutting_sites(const TriangleMesh& mesh, std::size_t crown_triangle
 
 JoinedTooth restored(const TriangleMesh& crown, const Joining& joining, const TriangleMesh& open,
                      const FilledMesh& filled) {
+  assert(self_intersecting_triangles(filled.mesh).empty());
   JoinedTooth tooth;
   tooth.mesh = filled.mesh;
   tooth.crown_vertices = static_cast<int>(crown.vertices.size());

@@ -96,6 +96,61 @@ TEST(ClearFilling, ASpikeThroughBothLidsLeavesNone) {
   EXPECT_FALSE(clear_filling(box, only_hole(box)));
 }
 
+/// The same with each side of the rim in so many pieces, and the walls below in fans.
+TriangleMesh fine_box_with_spike(double tip, int pieces) {
+  TriangleMesh box = box_with_spike(tip);
+  box.triangles.erase(box.triangles.begin(), box.triangles.begin() + 8);
+  std::vector<std::int32_t> rim;
+  for (int side = 0; side < 4; ++side) {
+    const Point from = box.vertices[static_cast<std::size_t>(4 + side)],
+                to = box.vertices[static_cast<std::size_t>(4 + (side + 1) % 4)];
+    rim.push_back(4 + side);
+    for (int i = 1; i < pieces; ++i) {
+      rim.push_back(static_cast<std::int32_t>(box.vertices.size()));
+      box.vertices.emplace_back(from + (to - from) * i / pieces);
+    }
+    const std::size_t first = rim.size() - static_cast<std::size_t>(pieces);
+    const std::int32_t below = side, next = (side + 1) % 4;
+    box.triangles.push_back({below, next, 4 + (side + 1) % 4});
+    for (std::size_t i = first; i + 1 < rim.size(); ++i) box.triangles.push_back({below, rim[i + 1], rim[i]});
+    box.triangles.push_back({below, 4 + (side + 1) % 4, rim.back()});
+  }
+  return box;
+}
+
+/// With a small closed body in the middle, that lids over the rim's high corners go through and those over its low ones
+/// pass below.
+TriangleMesh with_body_above(const TriangleMesh& box) {
+  TriangleMesh body = test::tetrahedron();
+  const Point middle = (body.vertices[0] + body.vertices[1] + body.vertices[2] + body.vertices[3]) / 4;
+  for (Point& p : body.vertices) p = Point(0.5, 0.5, 1.3) + 0.15 * (p - middle);
+  return test::together(box, body, {0, 0, 0});
+}
+
+TEST(ClearFilling, ALidPassesBelowABodyThatIsInItsWay) {
+  const TriangleMesh box = with_body_above(box_with_spike(0.2));
+  const auto lid = clear_filling(box, only_hole(box));
+  ASSERT_TRUE(lid);
+  EXPECT_EQ(as_set(*lid), as_set(through_the_valley));
+}
+
+TEST(ClearFilling, FineRimsAreClosedPastABodyToo) {
+  for (const int pieces : {5, 14, 24}) {
+    const TriangleMesh box = with_body_above(fine_box_with_spike(0.2, pieces));
+    ASSERT_TRUE(diagnose(box).is_oriented_manifold());
+    ASSERT_FALSE(self_intersecting_triangles(fill_holes(box).mesh).empty()) << "the usual lid is pierced";
+    const std::vector<int> hole = only_hole(box);
+    EXPECT_EQ(hole.size(), static_cast<std::size_t>(4 * pieces));
+    const auto lid = clear_filling(box, hole);
+    ASSERT_TRUE(lid) << pieces;
+    EXPECT_EQ(lid->size(), hole.size() - 2);
+    const TriangleMesh closed = with(box, *lid);
+    EXPECT_TRUE(self_intersecting_triangles(closed).empty());
+    EXPECT_TRUE(diagnose(closed).is_oriented_manifold());
+    EXPECT_TRUE(diagnose(closed).border_edges.empty());
+  }
+}
+
 TEST(ClearFilling, AnEdgeThatIsThereIsNotTakenTwice) {
   // A tetrahedron's side is missing, cut from corner to corner: of the four-sided hole one diagonal is an edge below.
   const TriangleMesh open{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0.1}, {0, 1, 0}}, {{0, 2, 1}, {0, 3, 2}}};
