@@ -28,6 +28,13 @@ std::string decimal_integer(std::string& text) {
   return {};
 }
 
+/// CLI11 would take one below zero for a very large one.
+std::string decimal_natural_number(std::string& text) {
+  std::string wrong = decimal_integer(text);
+  if (wrong.empty() && text.starts_with('-')) wrong = fmt::format("'{}' is below zero", text);
+  return wrong;
+}
+
 std::string decimal_number(std::string& text) {
   double value = 0;
   if (read_decimal(text, value) && std::isfinite(value)) return {};
@@ -45,7 +52,8 @@ std::string some_word(const std::string& text) {
 void take_decimal_numbers(CLI::App& app) {
   for (CLI::Option* option : app.get_options()) {
     const std::string type = option->get_type_name();
-    if (type.starts_with("INT") || type.starts_with("UINT")) option->transform(CLI::Validator(decimal_integer, ""));
+    if (type.starts_with("INT")) option->transform(CLI::Validator(decimal_integer, ""));
+    if (type.starts_with("UINT")) option->transform(CLI::Validator(decimal_natural_number, ""));
     if (type.starts_with("TEXT")) option->check(CLI::Validator(some_word, ""));
     if (type.starts_with("FLOAT")) option->transform(CLI::Validator(decimal_number, ""));
   }

@@ -63,6 +63,7 @@ TEST_F(CommandLine, NumbersAreDecimal) {
   for (const char* option : {"--e \"\"", "--e nan", "--e inf", "--e 0x1", "--root-length 14mm", "--threads 0b1"})
     EXPECT_EQ(run(complete(std::string("crown_34.ply -o tooth.ply --fdi 34 ") + option)).code, 2) << option;
   expect_error(complete("crown_34.ply -o tooth.ply --fdi 34 --root-length 14,2"), 2, "a point, not a comma");
+  expect_error("synth --data . -o teeth --type 34 --seed -1", 2, "below zero");
   EXPECT_FALSE(fs::exists(at("tooth.ply")));
   expect_done(complete("crown_34.ply -o tooth.ply --report r.json --fdi 034 --root-length +14.50 --threads 010"));
   EXPECT_EQ(report("r.json")["fdi"]["number"], 34) << "octal 034 is 28";
