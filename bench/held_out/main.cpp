@@ -10,9 +10,8 @@
 #include "completion/uncertainty.hpp"
 #include "evaluation/evaluate_cases.hpp"
 #include "evaluation/held_out_people.hpp"
-#include "evaluation/template_predictor.hpp"
+#include "evaluation/predictors.hpp"
 #include "families/crown_crop.hpp"
-#include "families/scanner_mesh.hpp"
 #include "pipeline/models.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
@@ -28,6 +27,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -41,33 +41,14 @@ using namespace rhizodont;
 struct Trial {
   ToothFamilies families;
   CompletionModels models;
-  std::vector<TemplateTooth> templates;  // by type
+  std::filesystem::path templates;
 };
-
-Trial make_trial(const std::filesystem::path& data, const std::filesystem::path& models) {
-  Trial trial{load_tooth_families(data), CompletionModels::load(models), {}};
-  for (int type = 0; type < tooth_type_count; ++type)
-    trial.templates.push_back(load_template_tooth(data / "templates", fdi_of_type(type, false)));
-  return trial;
-}
 
 /// The program and the template fit. The teeth go side by side, so one thread for each.
 std::vector<NamedPredictor> predictors_of(const Trial& trial) {
-  return {{"rhizodont",
-           [&](const TriangleMesh& crown, int fdi) {
-             CompleteOptions options;
-             options.fdi = fdi;
-             options.threads = 1;
-             return prediction_of(complete_tooth(crown, trial.models, options));
-           }},
-          {"template", [&](const TriangleMesh& crown, int fdi) {
-             const auto type = static_cast<std::size_t>(tooth_type_of_fdi(fdi));
-             return ToothPrediction{fit_template(crown, trial.templates[type]), {}, 0, {}};
-           }}};
-}
-
-TriangleMesh scanned(const TriangleMesh& crown, const PersonDraw& person) {
-  return scanner_mesh(crown, 0.3, 0.005, person.seed);
+  CompleteOptions options;
+  options.threads = 1;
+  return {completing_predictor(trial.models, options), template_predictor(trial.templates)};
 }
 
 std::string name_of(int fdi) { return fmt::format("{}", fdi); }
@@ -89,12 +70,12 @@ std::vector<Result> of_people(std::size_t people, const Make& make) {
   return results;
 }
 
-using ByType = std::array<double, tooth_type_count>;
+using ByTooth = std::map<int, double>;  // by the FDI number of a type's left tooth
 
 /// A tooth as both predictors complete it.
 struct Completed {
   std::optional<EvaluatedCase> evaluated;
-  double longer = 0;  // than the points
+  std::optional<double> longer;  // mm, than the points
 };
 
 Evaluation with_predictors(const std::vector<NamedPredictor>& predictors) {
@@ -103,7 +84,7 @@ Evaluation with_predictors(const std::vector<NamedPredictor>& predictors) {
   return evaluation;
 }
 
-void print_means(const std::string& name, const Evaluation& part, double longer) {
+void print_means(const std::string& name, const Evaluation& part, const std::vector<double>& longer) {
   const MeanFigures ours = mean_figures(part, 0, MeanOver::completed_by_all),
                     theirs = mean_figures(part, 1, MeanOver::completed_by_all);
   const Coverage held = coverage(part, 0);
@@ -111,39 +92,41 @@ void print_means(const std::string& name, const Evaluation& part, double longer)
   for (const EvaluatedCase& evaluated : part.cases) refused += evaluated.outcomes[0].figures ? 0 : 1;
   fmt::print(
       "| {} | {} | {:+.2f} | {:.2f} ({:.2f}) | {:.2f} ({:.2f}) | {:.3f} ({:.3f}) | {:.2f} | {:.2f} ({:.2f}) | {:.2f} | "
-      "{:.3f} ({:.3f}) | {} | {:.0f} % | {:.0f} % | {:+.2f} | {} |\n",
+      "{:.3f} ({:.3f}) | {} | {:.0f} % | {:.0f} % | {} | {} |\n",
       name, ours.teeth, ours.root_length_bias_mm, ours.root_length_abs_error_mm, theirs.root_length_abs_error_mm,
       ours.matched_apex_distance_mm, theirs.matched_apex_distance_mm, ours.root_chamfer_mm, theirs.root_chamfer_mm,
       ours.root_chamfer_mm / std::max(1e-9, theirs.root_chamfer_mm), ours.chamfer_l2_e3, theirs.chamfer_l2_e3,
       ours.chamfer_l2_e3 / std::max(1e-9, theirs.chamfer_l2_e3), ours.f_score, theirs.f_score, ours.right_root_counts,
-      100 * held.length, 100 * held.apex, longer, refused);
+      100 * held.length, 100 * held.apex, longer.empty() ? "" : fmt::format("{:+.2f}", median(longer)), refused);
 }
 
 /// Returns how much longer surfaces are than their points.
-ByType print_completed(const Trial& trial, std::size_t people) {
+ByTooth print_completed(const Trial& trial, std::size_t people) {
   const std::vector<NamedPredictor> predictors = predictors_of(trial);
   const auto teeth = of_people<Completed>(people, [&](const PersonDraw& person, int type) {
     const SyntheticTooth tooth = held_out_tooth(trial.families, person, type);
-    const TriangleMesh crown = scanned(held_out_crown(tooth, person), person);
+    const TriangleMesh crown = scanned_crown(held_out_crown(tooth, person), person);
     const int fdi = fdi_of_type(type, false);
     Completed completed;
     completed.evaluated.emplace();
     completed.evaluated->files.fdi = fdi;
     for (const NamedPredictor& predictor : predictors)
       completed.evaluated->outcomes.push_back(evaluate_case(predictor.predict, fdi, crown, tooth.mesh));
-    if (const auto& said = completed.evaluated->outcomes[0].uncertainty)
-      completed.longer = said->length_mm - predicted_root(crown, tooth.mesh, fdi, trial.models).outcome.length_mm;
+    if (completed.evaluated->outcomes[0].figures)
+      completed.longer =
+          surface_longer(completed.evaluated->outcomes[0], predicted_root(crown, tooth.mesh, fdi, trial.models));
     return completed;
   });
   fmt::print(
       "## Meshes\n\n{} people; in brackets the template fit on the same teeth, and our share of its error. Surface: "
-      "the mesh's root less that of its points.\n\n| tooth | teeth | length bias, mm | length, mm | apices, mm | root "
+      "the mesh's root less that of its points, median.\n\n| tooth | teeth | length bias, mm | length, mm | apices, mm "
+      "| root "
       "Chamfer, mm | share | Chamfer L2 x 1000 | share | F at 1 % | right roots | lengths held | apices held | "
       "surface, "
       "mm | refused |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n",
       people);
   std::array<Evaluation, tooth_type_count + 2> parts;  // then molars, then all
-  std::array<double, tooth_type_count + 2> longer{};
+  std::array<std::vector<double>, tooth_type_count + 2> longer;
   parts.fill(with_predictors(predictors));
   constexpr std::size_t molars = tooth_type_count, all = tooth_type_count + 1;
   for (std::size_t i = 0; i < teeth.size(); ++i) {
@@ -151,17 +134,21 @@ ByType print_completed(const Trial& trial, std::size_t people) {
     const std::size_t type = i % tooth_type_count;
     std::vector<std::size_t> to{type, all};
     if (type % 8 >= 5) to.push_back(molars);
-    for (const std::size_t part : to) parts[part].cases.push_back(*teeth[i].evaluated), longer[part] += teeth[i].longer;
+    for (const std::size_t part : to) {
+      parts[part].cases.push_back(*teeth[i].evaluated);
+      if (teeth[i].longer) longer[part].push_back(*teeth[i].longer);
+    }
   }
   for (std::size_t part = 0; part < parts.size(); ++part)
     print_means(part == molars ? "molars"
                 : part == all  ? "all"
                                : name_of(fdi_of_type(static_cast<int>(part), false)),
-                parts[part], longer[part] /= std::max<double>(1, static_cast<double>(parts[part].cases.size())));
+                parts[part], longer[part]);
   std::fflush(stdout);
-  ByType result;
-  std::copy_n(longer.begin(), result.size(), result.begin());
-  return result;
+  std::map<int, std::vector<double>> by_type;
+  for (int type = 0; type < tooth_type_count; ++type)
+    by_type[fdi_of_type(type, false)] = longer[static_cast<std::size_t>(type)];
+  return surface_longer_by_type(by_type);
 }
 
 /// Sums over the predicted roots of a type, or of all.
@@ -183,15 +170,18 @@ struct OfPoints {
   }
 };
 
-void print_points(const Trial& trial, std::size_t people, const ByType& surface_longer) {
+void print_points(const Trial& trial, std::size_t people, const ByTooth& longer) {
   const auto roots = of_people<std::optional<PredictedRoot>>(people, [&](const PersonDraw& person, int type) {
     const SyntheticTooth tooth = held_out_tooth(trial.families, person, type);
     return predicted_root(held_out_crown(tooth, person), tooth.mesh, fdi_of_type(type, false), trial.models);
   });
   std::array<OfPoints, tooth_type_count + 1> sums;  // the last of all
-  for (std::size_t i = 0; i < roots.size(); ++i)
-    for (const std::size_t to : {i % tooth_type_count, std::size_t{tooth_type_count}})
-      sums[to].add(roots[i], surface_longer[i % tooth_type_count]);
+  for (std::size_t i = 0; i < roots.size(); ++i) {
+    const std::size_t type = i % tooth_type_count;
+    const auto of_type = longer.find(fdi_of_type(static_cast<int>(type), false));  // none: nothing was completed
+    for (const std::size_t to : {type, std::size_t{tooth_type_count}})
+      sums[to].add(roots[i], of_type == longer.end() ? 0 : of_type->second);
+  }
   fmt::print(
       "\n## Points\n\n{} people; lengths with what the surface adds to or takes from its points above. Shreds: the "
       "first prediction fell to pieces. Missing: no crown or no root.\n\n"
@@ -227,7 +217,7 @@ std::optional<std::array<EvaluatedCase, tilts.size()>> tilted(const Trial& trial
     line.slope = std::tan(tilts[t] * std::numbers::pi / 180) * Eigen::Vector2d(std::cos(side), std::sin(side));
     const auto crop = crop_crown(tooth, line);
     if (!crop) return std::nullopt;
-    const TriangleMesh crown = scanned(*crop, person);
+    const TriangleMesh crown = scanned_crown(*crop, person);
     result[t].files.fdi = fdi_of_type(type, false);
     for (const NamedPredictor& predictor : predictors)
       result[t].outcomes.push_back(evaluate_case(predictor.predict, result[t].files.fdi, crown, tooth.mesh));
@@ -274,10 +264,11 @@ int main(int argc, char** argv) {
     return argc > at ? static_cast<std::size_t>(std::strtoul(argv[at], nullptr, 10)) : usual;
   };
   try {
-    const Trial trial = make_trial(argv[1], argv[2]);
-    ByType surface_longer{};
-    if (count(4, 6) > 0) surface_longer = print_completed(trial, count(4, 6));
-    if (count(3, 60) > 0) print_points(trial, count(3, 60), surface_longer);
+    const std::filesystem::path data = argv[1];
+    const Trial trial{load_tooth_families(data), CompletionModels::load(argv[2]), data / "templates"};
+    ByTooth longer;
+    if (count(4, 6) > 0) longer = print_completed(trial, count(4, 6));
+    if (count(3, 60) > 0) print_points(trial, count(3, 60), longer);
     if (count(5, 3) > 0) print_tilts(trial, count(5, 3));
     return 0;
   } catch (const std::exception& error) {

@@ -12,6 +12,7 @@ namespace rhizodont {
 namespace {
 
 constexpr const char* key = "root_length.correction_mm";
+constexpr double shortest = 0.8, longest = 1.25;  // a short root cut high is not to be halved by a type's mean
 
 }  // namespace
 
@@ -32,7 +33,6 @@ void note_root_length_corrections(const std::map<int, double>& by_tooth, std::ma
 }
 
 void lengthen_root(OrientedPoints& points, const Eigen::Vector3d& axis, double level, double mm) {
-  constexpr double shortest = 0.8, longest = 1.25;  // a short root cut high is not to be halved by a type's mean
   if (mm == 0 || points.points.empty()) return;
   const double length = level - extent_along(points.points, axis).first;
   if (!(length > 0)) return;
@@ -44,6 +44,11 @@ void lengthen_root(OrientedPoints& points, const Eigen::Vector3d& axis, double l
     Eigen::Vector3d& normal = points.normals[i];
     normal = (normal + (1 / factor - 1) * normal.dot(axis) * axis).normalized();
   }
+}
+
+double length_before_correction(double length, double mm) {
+  // Where the bounds did not hold it back, the length before lies between them; where one did, it lies there.
+  return std::clamp(length - mm, length / longest, length / shortest);
 }
 
 }  // namespace rhizodont

@@ -28,4 +28,7 @@ void note_root_length_corrections(const std::map<int, double>& by_tooth, std::ma
 /// @param level  of the crown's lowest place, mm along the axis
 void lengthen_root(OrientedPoints& points, const Eigen::Vector3d& axis, double level, double mm);
 
+/// How long a root was before `lengthen_root` made it `length` mm long (> 0) by being asked for `mm`.
+double length_before_correction(double length, double mm);
+
 }  // namespace rhizodont

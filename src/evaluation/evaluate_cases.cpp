@@ -56,6 +56,7 @@ UncertaintyFigures uncertainty_figures(const ToothPrediction& tooth, const Trian
                                        const RootFigures& figures) {
   UncertaintyFigures result;
   result.interval = tooth.interval;
+  result.source = tooth.source;
   result.apex_expected_distance_mm = tooth.apex_expected_distance_mm;
   result.length_mm = figures.true_root_length_mm + figures.root_length_error_mm;
   result.apex_distance_mm = figures.apex_distance_mm;
@@ -77,7 +78,8 @@ UncertaintyFigures uncertainty_figures(const ToothPrediction& tooth, const Trian
 }  // namespace
 
 ToothPrediction prediction_of(const CompletedTooth& tooth) {
-  return {tooth.mesh, tooth.record.root.interval, tooth.record.root.apex_expected_distance_mm, tooth.uncertainty};
+  return {tooth.mesh, tooth.record.root.interval, tooth.record.root.apex_expected_distance_mm, tooth.uncertainty,
+          tooth.record.root.source};
 }
 
 CaseOutcome evaluate_case(const ToothPredictor& predict, int fdi, const TriangleMesh& crown, const TriangleMesh& truth,

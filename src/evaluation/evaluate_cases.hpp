@@ -32,10 +32,11 @@ std::vector<EvaluationCase> find_evaluation_cases(const std::filesystem::path& f
 
 /// A whole tooth and, from predictors that know, how sure they are of it.
 struct ToothPrediction {
-  TriangleMesh mesh;                     ///< mm
-  std::optional<RootInterval> interval;  ///< 80 %
-  double apex_expected_distance_mm = 0;  ///< before calibration; 0: the predictor does not say
-  std::vector<double> uncertainty;       ///< mm per vertex, 0 on the crown; empty: the predictor does not say
+  TriangleMesh mesh;                        ///< mm
+  std::optional<RootInterval> interval;     ///< 80 %
+  double apex_expected_distance_mm = 0;     ///< before calibration; 0: the predictor does not say
+  std::vector<double> uncertainty;          ///< mm per vertex, 0 on the crown; empty: the predictor does not say
+  RootSource source = RootSource::network;  ///< where the root comes from; of no account where uncertainty is empty
 };
 
 /// A completed tooth as a prediction.
@@ -57,6 +58,7 @@ struct UncertaintyFigures {
   double apex_distance_mm = 0;     ///< of the deepest predicted apex from the true one that is matched to it
   double uncertainty_mm = 0;       ///< mean over the new vertices
   double surface_distance_mm = 0;  ///< mean distance of the new vertices from the true surface
+  RootSource source = RootSource::network;
 };
 
 /// What became of one crown in the hands of one predictor.

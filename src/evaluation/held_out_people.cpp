@@ -7,6 +7,7 @@
 #include "evaluation/root_apices.hpp"
 #include "evaluation/root_figures.hpp"
 #include "families/crown_crop.hpp"
+#include "families/scanner_mesh.hpp"
 #include "mesh/geometry.hpp"
 #include "pipeline/models.hpp"
 #include "pipeline/prediction.hpp"
@@ -17,6 +18,7 @@
 #include "training/sample_numbers.hpp"
 
 #include <algorithm>
+#include <cstddef>
 
 namespace rhizodont {
 
@@ -56,6 +58,11 @@ TriangleMesh held_out_crown(const SyntheticTooth& tooth, const PersonDraw& perso
   return draw_cropped_crown(tooth, samples.paper_crop_share, samples.gap_probability, random).mesh;
 }
 
+TriangleMesh scanned_crown(const TriangleMesh& crown, const PersonDraw& person) {
+  constexpr double edge_mm = 0.3, noise_mm = 0.005;
+  return scanner_mesh(crown, edge_mm, noise_mm, person.seed);
+}
+
 PredictedRoot predicted_root(const TriangleMesh& crown, const TriangleMesh& truth, int fdi,
                              const CompletionModels& models) {
   const CompletionModels::Content& content = *content_of(models);
@@ -92,6 +99,29 @@ PredictedRoot completed_root(const CaseOutcome& completed, int fdi, const Triang
   for (const ApexPair& pair : figures.matched_apices)
     if (pair.predicted == 0) root.apex_off = figures.true_apices[pair.truth].point - figures.predicted_apices[0].point;
   return root;
+}
+
+std::optional<double> surface_longer(const CaseOutcome& completed, const PredictedRoot& points) {
+  if (!completed.figures || !completed.uncertainty) return std::nullopt;
+  if (completed.uncertainty->source != RootSource::network || points.source != RootSource::network) return std::nullopt;
+  return completed.uncertainty->length_mm - points.outcome.length_mm;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*std::max_element(values.begin(), middle) + *middle) / 2;
+}
+
+std::map<int, double> surface_longer_by_type(const std::map<int, std::vector<double>>& by_type) {
+  constexpr std::size_t fewest = 3;
+  std::vector<double> all;
+  for (const auto& [fdi, of_type] : by_type) all.insert(all.end(), of_type.begin(), of_type.end());
+  std::map<int, double> result;
+  if (all.empty()) return result;
+  for (const auto& [fdi, of_type] : by_type) result[fdi] = median(of_type.size() < fewest ? all : of_type);
+  return result;
 }
 
 RootOutcome lengthened(const PredictedRoot& root, double mm) {

@@ -8,6 +8,9 @@
 #include "rhizodont/mesh.hpp"
 
 #include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
 
 namespace rhizodont {
 
@@ -26,6 +29,9 @@ SyntheticTooth held_out_tooth(const ToothFamilies& families, const PersonDraw& p
 /// NoResultError where none comes off in one piece.
 TriangleMesh held_out_crown(const SyntheticTooth& tooth, const PersonDraw& person);
 
+/// The crown as an intraoral scanner has it: edges of about 0.3 mm, 0.005 mm of noise, by the person's own draw.
+TriangleMesh scanned_crown(const TriangleMesh& crown, const PersonDraw& person);
+
 /// A root as it was predicted, and how far its deepest apex is off.
 struct PredictedRoot {
   RootOutcome outcome;
@@ -43,6 +49,17 @@ PredictedRoot predicted_root(const TriangleMesh& crown, const TriangleMesh& trut
 
 /// The root of a completed tooth. Precondition: the outcome has figures and says how sure the prediction is.
 PredictedRoot completed_root(const CaseOutcome& completed, int fdi, const TriangleMesh& crown);
+
+/// By how many mm a completed tooth's root is longer than its points. None where the tooth was refused, where the
+/// predictor does not say how sure it is, and where either root is not the network's first one.
+std::optional<double> surface_longer(const CaseOutcome& completed, const PredictedRoot& points);
+
+/// The medians by type of what `surface_longer` gives; of a type with fewer than 3, that of all types, and none where
+/// there is nothing at all. The keys are kept.
+std::map<int, double> surface_longer_by_type(const std::map<int, std::vector<double>>& by_type);
+
+/// The middle value, of an even number the mean of both middle ones. Precondition: not empty.
+double median(std::vector<double> values);
 
 /// What became of it had it been predicted longer by `mm`.
 RootOutcome lengthened(const PredictedRoot& root, double mm);

@@ -36,8 +36,11 @@ struct PeopleCalibration {
 
 /// Measures on the people for calibration. Of some the teeth are completed, which tells lengths, apices and how far off
 /// vertices are; of the others lengths and apices come from the network's points, which are quick to have, with what
-/// the surface made of such points changes in length. What the weights say of types so far makes no difference. Teeth
-/// of which nothing can be predicted are left out; the same for any number of threads. Throws UsageError for an option
+/// the surface made of such points changes in length. Completed teeth whose root is not the network's first one count
+/// by their points. A correction of lengths that the weights hold already is taken back (`length_before_correction`):
+/// to a few hundredths of a millimetre the result is that of weights without one. Scales and correction come from the
+/// same teeth, so coverage is to be measured on others. Teeth of which nothing can be predicted are left out; the same
+/// for any number of threads. Throws UsageError for an option
 /// out of range and where too few teeth are left.
 PeopleCalibration calibrate_on_people(const ToothFamilies& families, const CompletionModels& models,
                                       const PeopleCalibrationOptions& options = {});

@@ -52,6 +52,14 @@ TEST(RootLengthCorrection, IsBoundedAndLeavesWhatHasNoRoot) {
   EXPECT_EQ(none.points, cone().points);
 }
 
+TEST(RootLengthCorrection, IsTakenBackAlsoWhereItWasBounded) {
+  for (const double mm : {-100.0, -2.5, -1.0, 0.0, 0.7, 2.4, 3.0}) {
+    OrientedPoints points = cone();
+    lengthen_root(points, Eigen::Vector3d::UnitZ(), 0, mm);
+    EXPECT_NEAR(length_before_correction(-points.points.back().z(), mm), 10, 1e-9) << mm;
+  }
+}
+
 TEST(RootLengthCorrection, GoesThroughTheWeightFile) {
   std::map<std::string, std::string> metadata;
   EXPECT_EQ(root_length_correction(metadata, 36), 0);

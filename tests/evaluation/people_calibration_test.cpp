@@ -66,7 +66,7 @@ TEST_F(PeopleCalibrationOfOneType, CorrectsLengthsWhateverTheWeightsSaidBefore) 
     off.push_back(roots.back().length_mm - roots.back().true_length_mm);
   }
   std::sort(off.begin(), off.end());
-  EXPECT_NEAR(off[10], 0, 0.05) << "the first person's tooth was completed before, and here is not";
+  EXPECT_NEAR((off[9] + off[10]) / 2, 0, 0.05) << "the first person's tooth was completed before, and here is not";
   const Coverage held = coverage(roots, content_of(corrected)->network.metadata());
   EXPECT_GE(held.length, 0.75);
   EXPECT_GE(held.apex, 0.75);
@@ -92,6 +92,34 @@ TEST_F(PeopleCalibrationOfOneType, RefusesOptionsOutOfRange) {
   odd.types = {16};
   for (const PeopleCalibrationOptions& options : {few, more, odd})
     EXPECT_THROW(calibrate_on_people(families, models, options), UsageError);
+}
+
+TEST(HeldOutPeopleTest, MedianOfAnEvenNumberLiesBetweenTheMiddleOnes) {
+  EXPECT_EQ(median({5}), 5);
+  EXPECT_EQ(median({9, 1, 2}), 2);
+  EXPECT_EQ(median({9, 1, 4, 2}), 3);
+}
+
+TEST(HeldOutPeopleTest, SurfacesOfTypesWithFewTeethAreAsMuchLongerAsAll) {
+  const auto longer = surface_longer_by_type({{11, {1, 5, 2}}, {36, {-3, -1}}, {37, {}}});
+  EXPECT_EQ(longer, (std::map<int, double>{{11, 2}, {36, 1}, {37, 1}}));
+  EXPECT_TRUE(surface_longer_by_type({{11, {}}}).empty());
+}
+
+TEST(HeldOutPeopleTest, SurfacesAreComparedWithPointsOfTheNetworksFirstRootsAlone) {
+  PredictedRoot points;
+  points.outcome.length_mm = 12;
+  CaseOutcome completed;
+  EXPECT_FALSE(surface_longer(completed, points)) << "refused";
+  completed.figures.emplace();
+  EXPECT_FALSE(surface_longer(completed, points)) << "does not say how sure it is";
+  completed.uncertainty.emplace().length_mm = 12.5;
+  EXPECT_EQ(surface_longer(completed, points), 0.5);
+  completed.uncertainty->source = RootSource::mean_tooth;
+  EXPECT_FALSE(surface_longer(completed, points));
+  completed.uncertainty->source = RootSource::network;
+  points.source = RootSource::network_laid_anew;
+  EXPECT_FALSE(surface_longer(completed, points));
 }
 
 TEST(HeldOutPeopleTest, AreOthersForFiguresThanForCalibration) {
