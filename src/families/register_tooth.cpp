@@ -9,8 +9,6 @@
 
 #include "base/option_range.hpp"
 #include "completion/similarity.hpp"
-#include "families/self_crossing.hpp"
-#include "families/tooth_family.hpp"
 #include "families/tooth_template.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/closest_point.hpp"
@@ -25,7 +23,6 @@
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
-#include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 
@@ -363,31 +360,6 @@ std::array<TemplateFile, tooth_type_count> load_template_files(const std::filesy
   return files;
 }
 
-LightTemplate light_template(const TriangleMesh& whole, std::size_t vertices) {
-  LightTemplate light{simplified(whole, vertices), {}, {}};
-  const ClosestPointIndex surface(whole);
-  for (const Point& p : light.mesh.vertices) {
-    const ClosestPoint near = surface.closest(p);
-    const Triangle& corners = whole.triangles[static_cast<std::size_t>(near.triangle)];
-    const auto corner = [&](std::size_t i) { return whole.vertices[static_cast<std::size_t>(corners[i])]; };
-    Eigen::Matrix<double, 3, 2> sides;
-    sides << corner(1) - corner(0), corner(2) - corner(0);
-    light.on.push_back(corners);
-    light.shares.emplace_back(sides.colPivHouseholderQr().solve(near.point - corner(0)));
-  }
-  return light;
-}
-
-TriangleMesh moved_with(const LightTemplate& light, const std::vector<Point>& to) {
-  TriangleMesh mesh = light.mesh;
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const auto corner = [&](std::size_t i) { return to[static_cast<std::size_t>(light.on[v][i])]; };
-    const Point first = corner(0);
-    mesh.vertices[v] = first + light.shares[v][0] * (corner(1) - first) + light.shares[v][1] * (corner(2) - first);
-  }
-  return mesh;
-}
-
 RegisteredTooth register_tooth(const TriangleMesh& given, int fdi,
                                const std::array<TemplateFile, tooth_type_count>& templates,
                                const RegisterToothOptions& options) {
@@ -428,10 +400,6 @@ RegisteredTooth register_tooth(const TriangleMesh& given, int fdi,
   const Point centre = area_centroid(own.mesh);
   for (Point& p : registered.vertices) p = centre + map.scale * (p - centre);
   result.vertices = std::move(registered.vertices);
-  if (crosses_itself(moved_with(light_template(own.mesh, FamilyLoadOptions().vertices), result.vertices)))
-    throw InputError(
-        "The template runs into itself once it is bent onto this tooth: no tooth can be grown from it. Do the roots "
-        "touch each other, or has the surface deep folds?");
   return result;
 }
 

@@ -34,19 +34,6 @@ struct RegisterToothOptions {
   double largest_type_ratio = 1.25;  ///< >= 1: how much worse the tooth may fit its own type than one of another kind
 };
 
-/// A template with fewer vertices, each of which lies on a triangle of the template and moves with it.
-struct LightTemplate {
-  TriangleMesh mesh;
-  std::vector<Triangle> on;  ///< per vertex of the mesh: corners of the template's triangle that it lies on
-  std::vector<Eigen::Vector2d>
-      shares;  ///< per vertex: of the way from the first corner to the second, and to the third
-};
-
-/// `vertices`: about so many, as `simplified`.
-LightTemplate light_template(const TriangleMesh& whole, std::size_t vertices);
-/// Its surface once the whole template's vertices have gone to `to`: as many as these.
-TriangleMesh moved_with(const LightTemplate& light, const std::vector<Point>& to);
-
 /// A whole tooth in correspondence with a template.
 struct RegisteredTooth {
   std::vector<Point>
@@ -63,9 +50,8 @@ struct RegisteredTooth {
 /// @param fdi    of a permanent tooth; a tooth of the right side is mirrored
 /// @param templates  of all types, for comparison
 /// Throws InputError with the reason for a tooth that is open, in several pieces, defective, of another size or by its
-/// form of another kind (incisor, canine, premolar, molar), for one that the template cannot be brought onto, and where
-/// the result runs into itself once it is simplified as load_tooth_families does unless told otherwise; UsageError for
-/// options out of range and a number that is no permanent tooth's.
+/// form of another kind (incisor, canine, premolar, molar), and for one that the template cannot be brought onto;
+/// UsageError for options out of range and a number that is no permanent tooth's.
 RegisteredTooth register_tooth(const TriangleMesh& tooth, int fdi,
                                const std::array<TemplateFile, tooth_type_count>& templates,
                                const RegisterToothOptions& options = {});

@@ -5,12 +5,14 @@
 #include "base/lower_case.hpp"
 #include "families/self_crossing.hpp"
 #include "families/tooth_template.hpp"
+#include "mesh/closest_point.hpp"
 #include "mesh/nearest_vertex.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/label_numbers.hpp"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <Eigen/Dense>
 
 #include <algorithm>
 #include <array>
@@ -21,20 +23,12 @@
 namespace rhizodont {
 namespace {
 
-bool is_file(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (status.type() == std::filesystem::file_type::none)  // a link that leads nowhere is merely not found
-    throw InputError("The file " + path.string() + " cannot be read: " + error.message() + ".");
-  return std::filesystem::is_regular_file(status);
-}
-
 /// The files of a folder, sorted by name.
 std::vector<std::filesystem::path> files_of(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code error;
   for (std::filesystem::directory_iterator at(folder, error), end; !error && at != end; at.increment(error))
-    if (is_file(at->path())) files.push_back(at->path());
+    if (at->is_regular_file()) files.push_back(at->path());
   if (error) throw InputError("The folder " + folder.string() + " cannot be read: " + error.message() + ".");
   std::sort(files.begin(), files.end());
   return files;
@@ -70,6 +64,19 @@ std::optional<int> fdi_of(int number, const ToothFileOptions& options) {
   const int length = options.numbers == LabelNumbers::arch14 ? 14 : 16;
   if (number < 1 || number > length) return std::nullopt;
   return fdi_of_arch_place(number, length, *options.jaw);
+}
+
+/// Where a point of a mesh's surface goes when the mesh's vertices go to `to`.
+Point carried_along(const Point& p, const TriangleMesh& mesh, const ClosestPointIndex& surface,
+                    const std::vector<Point>& to) {
+  const ClosestPoint near = surface.closest(p);
+  const Triangle& t = mesh.triangles[static_cast<std::size_t>(near.triangle)];
+  const std::array<std::size_t, 3> v{static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
+                                     static_cast<std::size_t>(t[2])};
+  Eigen::Matrix<double, 3, 2> sides;
+  sides << mesh.vertices[v[1]] - mesh.vertices[v[0]], mesh.vertices[v[2]] - mesh.vertices[v[0]];
+  const Eigen::Vector2d share = sides.colPivHouseholderQr().solve(near.point - mesh.vertices[v[0]]);
+  return to[v[0]] + share[0] * (to[v[1]] - to[v[0]]) + share[1] * (to[v[2]] - to[v[0]]);
 }
 
 }  // namespace
@@ -120,18 +127,19 @@ std::vector<FamilyTemplate> load_registered_teeth(const std::filesystem::path& f
     if (file.extension() == ".ply" && file.stem().string().starts_with(begins)) files.push_back(file);
   std::vector<FamilyTemplate> teeth(files.size());
   if (files.empty()) return teeth;
-  const LightTemplate light = light_template(of_type.mesh, vertices);
+  const TriangleMesh light = simplified(of_type.mesh, vertices);
+  const ClosestPointIndex surface(of_type.mesh);
   const NearestVertexIndex full(of_type.mesh.vertices);
   std::vector<std::uint8_t> crown;
-  for (const Point& p : light.mesh.vertices)
-    crown.push_back(of_type.crown[static_cast<std::size_t>(full.nearest(p).index)]);
+  for (const Point& p : light.vertices) crown.push_back(of_type.crown[static_cast<std::size_t>(full.nearest(p).index)]);
   tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
     const TriangleMesh registered = load_mesh(files[i]).mesh;
     if (registered.triangles != of_type.mesh.triangles)
       throw InputError(fmt::format(
           "{} was not registered to the template of {} in this folder: register the tooth anew (rhizodont register).",
           files[i].string(), fdi_of_type(type, false)));
-    const TriangleMesh mesh = moved_with(light, registered.vertices);
+    TriangleMesh mesh = light;
+    for (Point& p : mesh.vertices) p = carried_along(p, of_type.mesh, surface, registered.vertices);
     teeth[i] = analyse_template(mesh, crown, buccal, mesh.vertices.size());
     if (crosses_itself(teeth[i].mesh))
       throw InputError(files[i].string() + " runs into itself once it is simplified: no tooth can be grown from it.");

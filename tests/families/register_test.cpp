@@ -44,9 +44,9 @@ class Registering : public OneTemplate {
 
   std::array<TemplateFile, tooth_type_count> templates() const { return load_template_files(folder.path()); }
 
-  std::string refusal_of(const TriangleMesh& tooth, const RegisterToothOptions& options = {}) const {
+  std::string refusal_of(const TriangleMesh& tooth) const {
     try {
-      register_tooth(tooth, fdi, templates(), options);
+      register_tooth(tooth, fdi, templates());
     } catch (const InputError& error) {
       return error.what();
     }
@@ -126,24 +126,6 @@ TEST_F(Registering, RefusesWhatIsNoWholeTooth) {
   EXPECT_NE(refusal_of(ball), "nothing was refused");
 }
 
-TEST_F(Registering, RefusesRootsThatRunIntoEachOther) {
-  const ToothFamilies families = whole_families();
-  TriangleMesh tooth = families.templates[molar].mesh;  // its roots lie one behind the other along x
-  const auto& roots = families.templates[molar].roots;
-  ASSERT_EQ(roots.size(), 2U);
-  const Point first = tooth.vertices[roots[0].apex], second = tooth.vertices[roots[1].apex];
-  const double middle = (first.x() + second.x()) / 2, half = std::abs(first.x() - second.x()) / 2;
-  const double tips = std::max(first.z(), second.z());
-  RegisterToothOptions wide;  // so that nothing else is amiss
-  wide.largest_rigid_mm = wide.largest_mean_mm = wide.largest_95_mm = 5;
-  EXPECT_EQ(refusal_of(tooth, wide), "nothing was refused");
-  for (Point& p : tooth.vertices) {
-    const double down = std::clamp(p.z() / tips, 0.0, 1.0);
-    p.x() -= (p.x() > middle ? 1.5 : -1.5) * half * down * down;
-  }
-  EXPECT_NE(refusal_of(tooth, wide).find("runs into itself"), std::string::npos) << refusal_of(tooth, wide);
-}
-
 TEST_F(Registering, BecomesAFurtherTemplate) {
   const ToothFamilies before = whole_families();
   const auto files = templates();
@@ -195,9 +177,6 @@ TEST(ToothFiles, AreFoundByTheirNumbers) {
   EXPECT_EQ(universal[0].fdi, 23);
   EXPECT_EQ(universal[1].fdi, 36);
   EXPECT_THROW(find_tooth_files(folder.path(), {LabelNumbers::arch14, std::nullopt}), UsageError) << "which jaw?";
-  std::filesystem::create_symlink("37.ply", folder.path() / "37.ply");  // in a circle
-  EXPECT_THROW(find_tooth_files(folder.path()), InputError) << "cannot be read";
-  std::filesystem::remove(folder.path() / "37.ply");
   std::ofstream(folder.path() / "55.ply") << "x";
   EXPECT_THROW(find_tooth_files(folder.path()), InputError) << "a milk tooth";
 }
