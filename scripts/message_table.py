@@ -15,17 +15,6 @@ THROWN = re.compile(r'\b(Usage|Input|NoResult|Output)Error\(')
 KINDS = {'Usage': 2, 'Input': 3, 'NoResult': 4, 'Output': 7}
 LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"')
 
-CODES = [
-    (0, 'done', 'all that was asked for is there'),
-    (2, 'wrong usage', 'the call itself is off; nothing was read or written. Mend the command'),
-    (3, 'unusable input', 'a file or the mesh in it cannot be used. The sentence names the defect, its ids the places; '
-     '`--repair` mends many, `--report` lists all ids. `doctor` ends so where models are missing or damaged'),
-    (4, 'no result', 'the input was understood, but nothing that keeps the promises came of it; nothing was written. `check` '
-     'ends so where a promise is not kept, `evaluate` where a tooth has no figures, `doctor` where its self test failed'),
-    (5, 'fault of the program', 'please report it, with the command'),
-    (6, 'some of several', 'of several teeth or cases some have no result; the reason stands beside each'),
-    (7, 'unwritable', 'a result cannot be written: no room, no right, no such place. What was there before is there still'),
-]
 # What is not thrown as one of these, but said by the programs themselves.
 FIXED = {
     2: [(f"there is no command '{GAP}': {GAP}", 'command line'),
@@ -39,16 +28,14 @@ HEAD = f'''<!--
 SPDX-FileCopyrightText: Rhizodont contributors
 SPDX-License-Identifier: GPL-3.0-or-later
 -->
-# Messages and exit codes
+# Messages
 
 A command that gives up says one line, `rhizodont: SENTENCE [ids]`, on standard error, and ends with the code of its kind.
 `{GAP}` stands for a name, a number or a reason; before what is wrong
 with a file its name stands. The room is where in `src/` the sentence is; of `apps/` it is `command line`.
 Python raises the same sentences as `UsageError` (2), `InputError` (3), `NoResultError` (4) and `OutputError` (7).
+What the codes mean: [exit codes](reference/exit_codes.md).
 Written by `scripts/message_table.py` from the sources; a test compares both, another has the program say some of each kind.
-
-| code | kind | what it means |
-|---|---|---|
 '''
 
 
@@ -174,7 +161,7 @@ def messages():
 
 
 def document():
-    text = HEAD + ''.join(f'| {code} | {kind} | {meaning} |\n' for code, kind, meaning in CODES)
+    text = HEAD
     for code, rows in sorted(messages().items()):
         text += f'\n## {TITLES[code]} ({code})\n\n| sentence | room |\n|---|---|\n'
         for said, room in sorted(rows, key=lambda row: (row[1] != 'command line', row[1], row[0])):

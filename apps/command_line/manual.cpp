@@ -67,11 +67,6 @@ std::string see_also(const DescribedCommand& command, const DescribedCommand& pr
   std::string text;
   for (const DescribedCommand* other : all_commands(program))
     if (other != &command) text += (text.empty() ? "" : ",\n") + (".BR " + plain(joined_path(*other, "-")) + " (1)");
-  // The comma belongs to the line of its page.
-  for (std::size_t at = text.find(",\n"); at != std::string::npos; at = text.find(",\n", at + 2))
-    text.replace(at, 2, " ,\n");
-  for (std::size_t at = text.find("(1) ,"); at != std::string::npos; at = text.find("(1) ,", at + 1))
-    text.replace(at, 5, "(1),");
   return text + "\n";
 }
 

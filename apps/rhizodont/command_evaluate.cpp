@@ -12,6 +12,7 @@
 #include "models_option.hpp"
 #include "networks/safetensors.hpp"
 #include "report/html_report.hpp"
+#include "report/json.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/hash.hpp"
@@ -155,9 +156,9 @@ std::string page_of(const EvaluateCommand& command, const std::vector<Evaluation
                                 {"evaluation", evaluation},
                                 {"scanner_limits", describe(CbctNoise{})}};
   const bool has_figures = mean_figures(evaluation, 0).teeth > 0;
-  return html_report(report.dump(), {{},
-                                     has_figures ? root_length_plot(evaluation) : "",
-                                     hashes_of(model_files(models_folder(command.models, command.said)))});
+  return html_report(text_of(report), {{},
+                                       has_figures ? root_length_plot(evaluation) : "",
+                                       hashes_of(model_files(models_folder(command.models, command.said)))});
 }
 
 void run(const EvaluateCommand& command) {

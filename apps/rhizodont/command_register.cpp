@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command_line/output_checks.hpp"
 #include "command_line/output_options.hpp"
+#include "command_line/terminal.hpp"
 #include "commands.hpp"
 #include "families/registered_templates.hpp"
 #include "rhizodont/error.hpp"
@@ -27,12 +28,17 @@ struct RegisterCommand {
   OutputOptions said;
 };
 
-nlohmann::ordered_json figures_of(const RegisteredTooth& tooth, int fdi) {
-  return {{"fdi", fdi},
+nlohmann::ordered_json figures_of(const RegisteredTooth& tooth, const ToothFile& file) {
+  return {{"file", file.path.filename().string()},
+          {"fdi", file.fdi},
           {"mean_mm", tooth.mean_mm},
           {"mean_before_bending_mm", tooth.rigid_mean_mm},
           {"within_95_percent_mm", tooth.percentile_95_mm},
           {"size_ratio", tooth.size_ratio}};
+}
+
+void say_refusal(const std::string& file, const std::string& why) {
+  print_error("rhizodont", (why.find(file) == std::string::npos ? file + ": " : "") + why);
 }
 
 void run(const RegisterCommand& command) {
@@ -58,15 +64,16 @@ void run(const RegisterCommand& command) {
       const auto type = static_cast<std::size_t>(tooth_type_of_fdi(files[i].fdi));
       write_output_files(
           {{outputs[i], mesh_file_bytes(outputs[i], registered_file(tooth, templates[type], files[i]))}});
-      figures.push_back(figures_of(tooth, files[i].fdi));
+      figures.push_back(figures_of(tooth, files[i]));
       command.said.tell(fmt::format(
           "{}: {}, {:.3f} mm apart ({:.2f} before bending), 95 % within {:.2f} mm, {:.2f} times the template's size",
           outputs[i].string(), files[i].fdi, tooth.mean_mm, tooth.rigid_mean_mm, tooth.percentile_95_mm,
           tooth.size_ratio));
     } catch (const InputError& error) {
       ++refused;
-      figures.push_back({{"fdi", files[i].fdi}, {"refusal", error.what()}});
-      fmt::print(stderr, "{}: refused. {}\n", files[i].path.string(), error.what());
+      figures.push_back(
+          {{"file", files[i].path.filename().string()}, {"fdi", files[i].fdi}, {"refusal", error.what()}});
+      say_refusal(files[i].path.string(), error.what());
     }
     std::fflush(stdout);
   }

@@ -23,7 +23,9 @@ namespace {
 
 constexpr double bytes_per_mb = 1024 * 1024;
 
-std::string text_of_file(const char* path) {
+namespace fs = std::filesystem;
+
+std::string text_of_file(const fs::path& path) {
   std::ifstream file(path);
   std::ostringstream text;
   text << file.rdbuf();
@@ -31,11 +33,36 @@ std::string text_of_file(const char* path) {
 }
 
 /// Nothing where the file is missing or says "max".
-std::optional<double> number_in_file(const char* path) {
+std::optional<double> number_in_file(const fs::path& path) {
   const std::string text = text_of_file(path);
   double number = 0;
   const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), number);
   return failure == std::errc() && end != text.data() ? std::optional(number) : std::nullopt;
+}
+
+/// The control group (version 2) that this process is in and those around it: the limits of all of them count.
+std::vector<fs::path> control_groups(const fs::path& root) {
+  std::istringstream lines(text_of_file(root / "proc/self/cgroup"));
+  fs::path own;
+  for (std::string line; std::getline(lines, line);)
+    if (line.starts_with("0::/")) own = line.substr(4);
+  // A group outside of what the container may see: all that can be read is the outermost one.
+  if (std::find(own.begin(), own.end(), "..") != own.end()) own.clear();
+  const fs::path outermost = root / "sys/fs/cgroup";
+  std::vector<fs::path> groups;
+  for (; !own.empty(); own = own.parent_path()) groups.push_back(outermost / own);
+  groups.push_back(outermost);
+  return groups;
+}
+
+/// What a group holds and could not give back: files that were not used of late are let go when memory is wanted.
+double held_bytes(const fs::path& group) {
+  const double held = number_in_file(group / "memory.current").value_or(0);
+  std::istringstream lines(text_of_file(group / "memory.stat"));
+  double bytes = 0;
+  for (std::string name; lines >> name >> bytes;)
+    if (name == "inactive_file") return std::max(held - bytes, 0.0);
+  return held;
 }
 
 int allowed_processors() {
@@ -61,18 +88,18 @@ std::optional<double> meminfo_mb(std::string_view meminfo, std::string_view name
   return std::nullopt;
 }
 
-Machine this_machine() {
+Machine this_machine(const fs::path& root) {
   Machine machine;
   machine.processors = allowed_processors();
   machine.threads = tbb::this_task_arena::max_concurrency();
-  const std::string meminfo = text_of_file("/proc/meminfo");
+  const std::string meminfo = text_of_file(root / "proc/meminfo");
   machine.memory_mb = meminfo_mb(meminfo, "MemTotal").value_or(0);
   machine.free_memory_mb = meminfo_mb(meminfo, "MemAvailable").value_or(0);
-  // In a container the limit of its group counts (control groups, version 2).
-  if (const auto most = number_in_file("/sys/fs/cgroup/memory.max"); most && *most / bytes_per_mb < machine.memory_mb) {
-    const double used = number_in_file("/sys/fs/cgroup/memory.current").value_or(0);
-    machine.memory_mb = *most / bytes_per_mb;
-    machine.free_memory_mb = std::clamp((*most - used) / bytes_per_mb, 0.0, machine.free_memory_mb);
+  for (const fs::path& group : control_groups(root)) {
+    const std::optional<double> most = number_in_file(group / "memory.max");
+    if (!most) continue;
+    machine.memory_mb = std::min(machine.memory_mb, *most / bytes_per_mb);
+    machine.free_memory_mb = std::clamp((*most - held_bytes(group)) / bytes_per_mb, 0.0, machine.free_memory_mb);
   }
 #if defined(__x86_64__)
   machine.has_fused_multiply_add = __builtin_cpu_supports("fma") != 0;

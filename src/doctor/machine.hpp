@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -20,7 +21,8 @@ struct Machine {
 };
 
 /// Asks the system. Throws nothing: what it does not tell is 0.
-Machine this_machine();
+/// @param root  the folder in which proc/ and sys/ stand: where memory and its limits are read
+Machine this_machine(const std::filesystem::path& root = "/");
 
 /// A line "NAME: NUMBER kB" of /proc/meminfo in MB; nothing if there is none.
 std::optional<double> meminfo_mb(std::string_view meminfo, std::string_view name);

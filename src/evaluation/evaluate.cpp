@@ -4,6 +4,7 @@
 
 #include "evaluation/evaluate_cases.hpp"
 #include "evaluation/predictors.hpp"
+#include "report/json.hpp"
 #include "rhizodont/error.hpp"
 
 namespace rhizodont {
@@ -19,11 +20,11 @@ std::string evaluate_to_json(const std::filesystem::path& cases, const Completio
     callback = [&](const EvaluationCase& files, std::size_t place, const std::string& predictor) {
       progress(files.fdi, static_cast<int>(place), static_cast<int>(all.size()), predictor);
     };
-  return nlohmann::ordered_json(evaluate_cases(all, predictors, {}, callback)).dump();
+  return text_of(evaluate_cases(all, predictors, {}, callback));
 }
 
 std::string root_figures_to_json(const TriangleMesh& crown, const TriangleMesh& truth, const TriangleMesh& predicted) {
-  return nlohmann::ordered_json(root_figures(crown, truth, predicted, crown_growth_axis(crown))).dump();
+  return text_of(root_figures(crown, truth, predicted, crown_growth_axis(crown)));
 }
 
 }  // namespace rhizodont

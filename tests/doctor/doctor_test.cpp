@@ -93,6 +93,61 @@ TEST(Doctor, OneModelInTheNameOfAnotherIsFound) {
   EXPECT_TRUE(speaks_of(found.faults, "Self test: "));
 }
 
+/// A system's files: 8000 MB of memory, 6000 MB of them free.
+struct System : test::TemporaryFolder {
+  System() { put("proc/meminfo", "MemTotal: 8192000 kB\nMemAvailable: 6144000 kB\n"); }
+  void put(const std::string& name, const std::string& text) const {
+    fs::create_directories((path() / name).parent_path());
+    write(name, text);
+  }
+  void put_group(const std::string& name, const std::string& most, long held_mb, long files_mb) const {
+    const std::string folder = "sys/fs/cgroup/" + name;
+    put(folder + "memory.max", most + "\n");
+    put(folder + "memory.current", std::to_string(held_mb * 1024 * 1024) + "\n");
+    put(folder + "memory.stat",
+        "anon 7\nactive_file 9\ninactive_file " + std::to_string(files_mb * 1024 * 1024) + "\nslab 5\n");
+  }
+  void expect_memory(double all_mb, double free_mb) const {
+    const Machine machine = this_machine(path());
+    EXPECT_DOUBLE_EQ(machine.memory_mb, all_mb);
+    EXPECT_DOUBLE_EQ(machine.free_memory_mb, free_mb);
+  }
+};
+
+std::string megabytes(long count) { return std::to_string(count * 1024 * 1024); }
+
+TEST(Doctor, MemoryIsThatOfTheMachineWhereNoGroupLimitsIt) {
+  const System system;
+  system.expect_memory(8000, 6000);
+  system.put("proc/self/cgroup", "0::/\n");
+  system.put_group("", "max", 5000, 0);
+  system.expect_memory(8000, 6000);
+  system.put_group("", megabytes(9000), 1000, 0);
+  system.expect_memory(8000, 6000);
+}
+
+TEST(Doctor, FilesInMemoryThatCanGoAreFree) {
+  const System system;
+  system.put_group("", megabytes(2000), 1900, 1500);
+  system.expect_memory(2000, 1600);
+}
+
+TEST(Doctor, TheLeastLimitOfAllGroupsAroundCounts) {
+  const System system;
+  system.put("proc/self/cgroup", "1:name=systemd:/other\n0::/jobs/job 7/step\n");
+  system.put_group("jobs/job 7/step/", "max", 10, 0);
+  system.put_group("jobs/job 7/", megabytes(3000), 1000, 0);
+  system.put_group("jobs/", megabytes(4000), 3900, 0);  // others fill it
+  system.put_group("other/", megabytes(1), 0, 0);
+  system.expect_memory(3000, 100);
+  system.put_group("jobs/job 7/step/", megabytes(500), 450, 0);
+  system.expect_memory(500, 50);
+  // A name from outside of the container, which nobody can follow here.
+  system.put("proc/self/cgroup", "0::/../jobs/job 7\n");
+  system.put_group("", megabytes(700), 100, 0);
+  system.expect_memory(700, 600);
+}
+
 TEST(Doctor, ReadsWhatTheSystemSays) {
   const std::string text = "MemTotal:       24653104 kB\nMemFree:         1000000 kB\nMemAvailable:   2048 kB\n";
   EXPECT_EQ(meminfo_mb(text, "MemAvailable"), 2);

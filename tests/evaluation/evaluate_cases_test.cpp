@@ -4,6 +4,7 @@
 
 #include "evaluation/made_teeth.hpp"
 #include "rhizodont/error.hpp"
+#include "rhizodont/evaluate.hpp"
 #include "rhizodont/io.hpp"
 
 #include <gtest/gtest.h>
@@ -64,6 +65,14 @@ TEST_F(EvaluateCases, SeveralTeethOfANumberHaveNames) {
   EXPECT_EQ(cases[1].truth.filename(), "tooth_36_young.ply");
   write_case("367", test::one_rooted());
   EXPECT_THROW(find_evaluation_cases(folder_), InputError);
+}
+
+TEST_F(EvaluateCases, NamesThatAreNoUtf8DoNotStandInTheWay) {
+  write("crown_36_\xff.ply", test::two_rooted());  // closed, so that it is refused at once
+  write("tooth_36_\xff.ply", test::two_rooted());
+  const CompletionModels models = CompletionModels::load(fs::path(RHIZODONT_SOURCE_DIR) / "models");
+  const auto figures = nlohmann::json::parse(evaluate_to_json(folder_, models));
+  EXPECT_NE(figures.dump().find("\xef\xbf\xbd"), std::string::npos) << figures;
 }
 
 TEST_F(EvaluateCases, FolderThatIsNoSetOfCasesIsRefused) {

@@ -241,6 +241,13 @@ def test_refusals_are_the_programs_sentences_without_paths():
     assert not scene.nodes
 
 
+def test_only_the_hidden_folder_is_taken_out_of_a_sentence():
+    for hidden, expected in (("", "/data/in/a.ply: no mesh"), ("/data/in", "a.ply: no mesh"), ("/other", "/data/in/a.ply: no mesh")):
+        with pytest.raises(program.Refused) as refusal:
+            program.run(["/bin/sh", "-c", "echo 'rhizodont: /data/in/a.ply: no mesh' >&2; exit 3"], hidden=hidden)
+        assert str(refusal.value) == expected
+
+
 def test_without_the_program_that_is_said(monkeypatch, tmp_path):
     monkeypatch.setenv("RHIZODONT", "")
     monkeypatch.setenv("PATH", str(tmp_path))

@@ -97,5 +97,7 @@ def run(
         if process.returncode and process.returncode not in also_good:
             said.seek(0)
             sentence = said.read().strip().removeprefix("rhizodont: ")
-            raise Refused(sentence.replace(hidden + os.sep, "") if sentence else f"The program ended with {process.returncode}.")
+            if hidden:
+                sentence = sentence.replace(hidden + os.sep, "")
+            raise Refused(sentence or f"The program ended with {process.returncode}.")
         return process.returncode
