@@ -48,9 +48,8 @@ TEST_F(RegisterProgram, WhatIsThereIsNotReplacedUnasked) {
   write_tooth("tooth_46_anna.ply");
   std::filesystem::create_directory(folder.path() / "out");
   folder.write("out/tooth_36_46_anna.ply", "mine");
-  folder.write("out/tooth_36_anna.ply", "mine");
   expect_error("register teeth --data data -o out", 2, "--overwrite");
-  expect_error("register teeth --data data -o out --json teeth/tooth_46_anna.ply", 2, "name of a mesh");
+  expect_error("register teeth --data data -o other --json teeth/tooth_46_anna.ply", 2, "name of a mesh");
 }
 
 }  // namespace
