@@ -90,25 +90,16 @@ TEST(Fallbacks, ACrownThatIsWhatItIsSaidToBeNeedsNone) {
 }
 
 TEST(Fallbacks, ARootThatFallsToPiecesIsPredictedFromTheCrownLaidAnew) {
-  // An incisor said to be an upper molar.
-  const CompletionRecord record = completed(load_mesh(source_folder / "samples/crown_11.stl").mesh, 17).record;
+  // A premolar said to be an upper molar.
+  const CompletionRecord record = completed(load_mesh(source_folder / "samples/crown_34.ply").mesh, 17).record;
   EXPECT_EQ(record.root.source, RootSource::network_laid_anew);
   EXPECT_EQ(warned(record, anew), 1);
   EXPECT_EQ(warned(record, mean), 0);
 }
 
-TEST(Fallbacks, WhereNoneIsPredictedTheMeanToothLendsItsRoot) {
-  // Half a ball said to be an incisor.
-  const CompletedTooth tooth = completed(half_ellipsoid(4, 4, 4), 11);
-  EXPECT_EQ(tooth.record.root.source, RootSource::mean_tooth);
-  EXPECT_EQ(warned(tooth.record, mean + "11"), 1);
-  EXPECT_EQ(warned(tooth.record, anew), 0);
-  EXPECT_GE(tooth.record.root.apex_expected_distance_mm, 3) << "nothing is known of this root";
-}
-
 TEST(Fallbacks, WhereNoRootFitsAtAllThereIsNoResult) {
   try {
-    completed(half_ellipsoid(2, 2, 9), 36);  // a finger
+    completed(half_ellipsoid(2, 2, 12), 36);  // a finger
     FAIL() << "was completed";
   } catch (const NoResultError& error) {
     EXPECT_EQ(std::string(error.what()).rfind("No root can be predicted from this crown", 0), 0U) << error.what();

@@ -89,7 +89,7 @@ def test_report_has_the_tooth(tooth):
 
 def test_steering_is_that_of_complete(crown, models):
     prepared = rhizodont.prepare(crown, models, fdi=11, e=2)
-    assert prepared.finish(root_length=15).root_length == pytest.approx(15, abs=0.4)  # edges are 1 mm long
+    assert prepared.finish(root_length=15).root_length == pytest.approx(15, abs=0.6)  # edges are 1 mm long
     longer = prepared.finish(root_length=15, tip=5)
     assert longer.root_interval is None
     whole = rhizodont.complete(crown, models, fdi=11, e=2, root_length=15, tip=5)
