@@ -29,5 +29,30 @@ TEST_F(TrainProgram, NeverReplacesACardUnasked) {
   expect_error("likeness --data . --out weights.ply", 2, "a weight file must not have the name of a mesh");
 }
 
+TEST_F(TrainProgram, CalibrateAsksForWhatItNeeds) {
+  for (const char* model : {"completion.safetensors", "atlas.safetensors"}) folder.write(model, "weights");
+  std::filesystem::create_directory(folder.path() / "data");
+  expect_error("calibrate --data .", 2, "--models");
+  expect_error("calibrate --models .", 2, "--data");
+  expect_error("calibrate --data data --models . --text table.ply", 2, "a text must not have the name of a mesh");
+  expect_error("calibrate --data data --models .", 3, "anatomy.csv");
+}
+
+TEST_F(TrainProgram, CalibrateReplacesNothingThatItReads) {
+  for (const char* model : {"completion.safetensors", "atlas.safetensors"}) folder.write(model, "weights");
+  folder.write("people.json", "lengths");
+  std::filesystem::create_directory(folder.path() / "registered");
+  folder.write("registered/tooth_36_a.txt", "a tooth");
+  std::filesystem::create_directory(folder.path() / "data");
+  for (const char* option : {"--text", "--json"}) {
+    const std::string call = "calibrate --data data --models . ";
+    expect_error(call + "--population people.json " + option + " people.json", 2, "which is read");
+    expect_error(call + "--registered registered " + option + " registered/tooth_36_a.txt", 2, "which is read");
+    expect_error(call + option + " completion.safetensors", 2, "");
+  }
+  EXPECT_EQ(test::read_all(folder.path() / "people.json"), "lengths");
+  EXPECT_EQ(test::read_all(folder.path() / "registered/tooth_36_a.txt"), "a tooth");
+}
+
 }  // namespace
 }  // namespace rhizodont

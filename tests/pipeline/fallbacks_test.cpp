@@ -97,6 +97,15 @@ TEST(Fallbacks, ARootThatFallsToPiecesIsPredictedFromTheCrownLaidAnew) {
   EXPECT_EQ(warned(record, mean), 0);
 }
 
+TEST(Fallbacks, WhereNoneIsPredictedTheMeanToothLendsItsRoot) {
+  // Half a ball said to be an upper molar.
+  const CompletedTooth tooth = completed(half_ellipsoid(4.5, 4.5, 4.5), 16);
+  EXPECT_EQ(tooth.record.root.source, RootSource::mean_tooth);
+  EXPECT_EQ(warned(tooth.record, mean + "16"), 1);
+  EXPECT_EQ(warned(tooth.record, anew), 0);
+  EXPECT_GE(tooth.record.root.apex_expected_distance_mm, 3) << "nothing is known of this root";
+}
+
 TEST(Fallbacks, WhereNoRootFitsAtAllThereIsNoResult) {
   try {
     completed(half_ellipsoid(2, 2, 12), 36);  // a finger

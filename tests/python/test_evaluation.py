@@ -18,11 +18,6 @@ CROWN = SOURCE / "samples" / "crown_34.ply"
 
 
 @pytest.fixture(scope="module")
-def models():
-    return rhizodont.Models(SOURCE / "models")
-
-
-@pytest.fixture(scope="module")
 def truth(models):
     return rhizodont.complete(CROWN, models, fdi=34, e=1, root_length=15)
 

@@ -25,11 +25,6 @@ pytestmark = pytest.mark.skipif(
 
 
 @pytest.fixture(scope="module")
-def models():
-    return rhizodont.Models(SOURCE / "models")
-
-
-@pytest.fixture(scope="module")
 def tooth(models):
     return rhizodont.complete(CROWN, models, fdi=36, e=1.5)
 
