@@ -6,6 +6,7 @@
 #include "base/stopwatch.hpp"
 #include "doctor/shipped_models.hpp"
 #include "networks/safetensors.hpp"
+#include "pipeline/models.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/hash.hpp"
@@ -35,7 +36,7 @@ std::string value_or_empty(const std::map<std::string, std::string>& metadata, c
 ModelFinding look_at(const std::filesystem::path& folder, const ShippedModel& shipped) {
   ModelFinding model;
   model.name = shipped.name;
-  model.is_needed = model.name == "completion.safetensors" || model.name == "atlas.safetensors";
+  model.is_needed = std::ranges::find(needed_model_files, model.name) != needed_model_files.end();
   const std::filesystem::path file = folder / shipped.name;
   std::error_code ignored;
   model.is_there = std::filesystem::exists(file, ignored);

@@ -22,8 +22,6 @@ const std::shared_ptr<const CompletionModels::Content>& content_of(const Complet
 
 namespace {
 
-constexpr const char* completion_file = "completion.safetensors";
-constexpr const char* atlas_file = "atlas.safetensors";
 constexpr const char* skirt_file = "skirt.safetensors";
 constexpr const char* likeness_file = "likeness.safetensors";
 constexpr const char* arch_file = "arch.safetensors";
@@ -32,7 +30,7 @@ constexpr const char* arch_file = "arch.safetensors";
 
 std::vector<std::filesystem::path> model_files(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
-  for (const char* needed : {completion_file, atlas_file}) {
+  for (const char* needed : needed_model_files) {
     files.push_back(folder / needed);
     std::error_code ignored;
     if (!std::filesystem::exists(files.back(), ignored))

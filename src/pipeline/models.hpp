@@ -9,10 +9,17 @@
 #include "rhizodont/complete.hpp"
 #include "segment/arch_model.hpp"
 
+#include <array>
 #include <memory>
 #include <optional>
 
 namespace rhizodont {
+
+inline constexpr const char* completion_file = "completion.safetensors";
+inline constexpr const char* atlas_file = "atlas.safetensors";
+
+/// The files without which nothing can be completed.
+inline constexpr std::array needed_model_files{completion_file, atlas_file};
 
 struct CompletionModels::Content {
   Atlas atlas;
