@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // How fast teeth and training samples are made, whether they are sound, and how near the families come to real crowns.
+#include "base/parallel_tasks.hpp"
 #include "base/stopwatch.hpp"
 #include "common/timing.hpp"
 #include "crown_fit.hpp"
@@ -16,7 +17,6 @@
 #include "training/completion_sample.hpp"
 
 #include <fmt/core.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -50,7 +50,7 @@ void soundness(const ToothFamilies& families, std::uint64_t seeds) {
     double length = 0, squares = 0, shortest = 1e9, longest = 0;
   };
   std::array<Row, tooth_type_count> rows{};
-  tbb::parallel_for(0, tooth_type_count, [&](int type) {
+  parallel_tasks(tooth_type_count, [&](int type) {
     Row& row = rows[static_cast<std::size_t>(type)];
     for (std::uint64_t seed = 0; seed < seeds; ++seed) {
       const SyntheticTooth tooth = generate_tooth(families, type, (std::uint64_t{1} << 33) + seed);
@@ -88,7 +88,7 @@ void nearness(const ToothFamilies& families, const std::filesystem::path& data) 
     for (int quadrant = 1; quadrant <= 4; ++quadrant)
       for (int place = 1; place <= 7; ++place) crowns.emplace_back(patient, 10 * quadrant + place);
   std::vector<std::array<double, 4>> distance(crowns.size());
-  tbb::parallel_for(std::size_t{0}, crowns.size(), [&](std::size_t i) {
+  parallel_tasks(crowns.size(), [&](std::size_t i) {
     const auto [patient, fdi] = crowns[i];
     const TriangleMesh crown =
         load_mesh(data / "crowns" / ("patient" + std::to_string(patient)) / ("crown_" + std::to_string(fdi) + ".ply"))

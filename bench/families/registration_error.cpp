@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "registration_error.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "common/timing.hpp"
 #include "completion/registration.hpp"
 #include "families/crown_crop.hpp"
@@ -11,7 +12,6 @@
 #include "training/completion_sample.hpp"
 
 #include <fmt/core.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -58,7 +58,7 @@ Outcome register_generated(const ToothFamilies& families, const Atlas& atlas, in
 void registration_table(const ToothFamilies& families, std::uint64_t count) {
   const Atlas atlas = make_atlas(families);
   std::array<std::vector<Outcome>, tooth_type_count> outcomes;
-  tbb::parallel_for(0, tooth_type_count, [&](int type) {
+  parallel_tasks(tooth_type_count, [&](int type) {
     auto& list = outcomes[static_cast<std::size_t>(type)];
     for (std::uint64_t i = 0; i < count; ++i) list.push_back(register_generated(families, atlas, type, i));
   });

@@ -7,11 +7,11 @@
 // last half millimetre.
 #include "root_curves.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "mesh/geometry.hpp"
 #include "teeth/fdi.hpp"
 
 #include <fmt/core.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -144,7 +144,7 @@ void curve_table(const ToothFamilies& families, std::uint64_t count) {
   ToothVariation straight;
   straight.curvature = straight.dilaceration = 0;
   std::array<ByRoot, tooth_type_count> drawn, plain;
-  tbb::parallel_for(0, tooth_type_count, [&](int type) {
+  parallel_tasks(tooth_type_count, [&](int type) {
     const auto t = static_cast<std::size_t>(type);
     drawn[t] = angles_of(families, type, count, {});
     plain[t] = angles_of(families, type, count, straight);

@@ -4,6 +4,7 @@
 // How far the borders of crowns lean against the crowns' form, on scans and as generated: bench_gum_lines DATA CROWNS
 // [COUNT]. CROWNS: a folder as scripts/cut_labelled.py makes it, *_FDI.ply; of generated crowns COUNT of each type. On
 // both the lean is what laying the type's mean crown on the crown finds (completion/registration.hpp).
+#include "base/parallel_tasks.hpp"
 #include "base/random_stream.hpp"
 #include "completion/registration.hpp"
 #include "families/crown_crop.hpp"
@@ -15,7 +16,6 @@
 #include "training/completion_sample.hpp"
 
 #include <fmt/core.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -67,7 +67,7 @@ Borders of_scans(const std::filesystem::path& folder, const Atlas& atlas) {
   std::sort(files.begin(), files.end());
   std::vector<std::optional<Border>> found(files.size());
   std::vector<int> types(files.size());
-  tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
+  parallel_tasks(files.size(), [&](std::size_t i) {
     const std::string name = files[i].stem().string();
     const int fdi = std::atoi(name.substr(name.rfind('_') + 1).c_str());
     types[i] = tooth_type_of_fdi(fdi);
@@ -82,7 +82,7 @@ Borders of_scans(const std::filesystem::path& folder, const Atlas& atlas) {
 Borders of_generated(const ToothFamilies& families, const Atlas& atlas, std::uint64_t count) {
   Borders borders;
   const CompletionSampleOptions samples;
-  tbb::parallel_for(0, tooth_type_count, [&](int type) {
+  parallel_tasks(tooth_type_count, [&](int type) {
     for (std::uint64_t i = 0; i < count; ++i) {
       const SyntheticTooth tooth = generate_tooth(families, type, (std::uint64_t{1} << 36) + i);
       RandomStream random(i, 400 + static_cast<std::uint64_t>(type));

@@ -7,6 +7,7 @@
 // surfaces, numbers of roots, intervals as a user gets them. Of all PEOPLE the same teeth are predicted as points:
 // lengths, apices, intervals, shreds. Of the first TILTED the crowns are cut along the junction and along planes that
 // lean against it.
+#include "base/parallel_tasks.hpp"
 #include "completion/uncertainty.hpp"
 #include "evaluation/evaluate_cases.hpp"
 #include "evaluation/held_out_people.hpp"
@@ -18,7 +19,6 @@
 #include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -57,7 +57,7 @@ std::string name_of(int fdi) { return fmt::format("{}", fdi); }
 template <class Result, class Make>
 std::vector<Result> of_people(std::size_t people, const Make& make) {
   std::vector<Result> results(people * tooth_type_count);
-  tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
+  parallel_tasks(results.size(), [&](std::size_t i) {
     try {
       results[i] = make(held_out_person(HeldOutPeople::for_figures, i / tooth_type_count),
                         static_cast<int>(i % tooth_type_count));

@@ -7,6 +7,7 @@
 // (arch/person_lengths.hpp). Correlations of the errors in their deviations, by pairs of fellows and of any other two
 // teeth, are what PersonLengthModel states. All lengths go to LENGTHS.csv.
 #include "arch/person_lengths.hpp"
+#include "base/parallel_tasks.hpp"
 #include "base/random_stream.hpp"
 #include "completion/uncertainty.hpp"
 #include "evaluation/held_out_people.hpp"
@@ -19,7 +20,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -66,7 +66,7 @@ std::vector<Person> people(const ToothFamilies& families, const CompletionModels
   for (const int quadrant : {1, 2, 3, 4})
     for (int place = 1; place <= 7; ++place) teeth.push_back(10 * quadrant + place);
   std::vector<std::optional<Length>> lengths(count * teeth.size());
-  tbb::parallel_for(std::size_t{0}, lengths.size(), [&](std::size_t i) {
+  parallel_tasks(lengths.size(), [&](std::size_t i) {
     lengths[i] = length_of(families, models, teeth[i % teeth.size()], draw_person(90'000 + i / teeth.size()));
   });
   std::vector<Person> all(count);

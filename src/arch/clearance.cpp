@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arch/clearance.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "mesh/at.hpp"
 #include "rhizodont/error.hpp"
 
@@ -209,7 +210,7 @@ std::vector<NeighbourClearance> neighbour_clearances(const std::vector<const Sol
     for (std::size_t j = i + 1; j < teeth.size(); ++j)
       if (teeth[i] && teeth[j] && gap(*teeth[i], *teeth[j]) < options.within) pairs.emplace_back(i, j);
   std::vector<std::optional<Clearance>> found(pairs.size());
-  tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t k) {
+  parallel_tasks(pairs.size(), [&](std::size_t k) {
     const Clearance clearance = clearance_of(*teeth[pairs[k].first], *teeth[pairs[k].second]);
     if (const std::optional<Approach> nearest = clearance.whole(); nearest && nearest->mm < options.within)
       found[k] = clearance;

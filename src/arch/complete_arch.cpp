@@ -9,6 +9,7 @@
 #include "arch/neck.hpp"
 #include "arch/person_lengths.hpp"
 #include "arch/resolve_collisions.hpp"
+#include "base/parallel_tasks.hpp"
 #include "mesh/adjacency.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/space_order.hpp"
@@ -22,7 +23,6 @@
 #include "teeth/label_numbers.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -244,27 +244,22 @@ std::vector<MadeTooth> complete_each(const std::vector<ToothOfArch>& teeth,
                                      const ArchMemory* memory) {
   std::vector<MadeTooth> all(teeth.size());
   Count count(progress, teeth.size());
-  tbb::parallel_for(
-      tbb::blocked_range<std::size_t>(0, teeth.size(), 1),
-      [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          const ToothOfArch& tooth = teeth[i];
-          try {
-            if (!is_permanent_tooth(tooth.fdi))
-              throw InputError(fmt::format("Tooth {} is a milk tooth, and no model knows their roots.", tooth.fdi));
-            if (const MadeTooth* before = remembered(memory, tooth, directions, options.tooth))
-              all[i] = *before;
-            else
-              all[i] = complete_one(tooth.crown, attempts_for(tooth.fdi, directions, options.tooth), models);
-          } catch (const UsageError&) {
-            throw;
-          } catch (const Error& error) {
-            all[i].refusal = error.what();
-          }
-          count.one_more(tooth.fdi);
-        }
-      },
-      tbb::simple_partitioner());
+  parallel_tasks(teeth.size(), [&](std::size_t i) {
+    const ToothOfArch& tooth = teeth[i];
+    try {
+      if (!is_permanent_tooth(tooth.fdi))
+        throw InputError(fmt::format("Tooth {} is a milk tooth, and no model knows their roots.", tooth.fdi));
+      if (const MadeTooth* before = remembered(memory, tooth, directions, options.tooth))
+        all[i] = *before;
+      else
+        all[i] = complete_one(tooth.crown, attempts_for(tooth.fdi, directions, options.tooth), models);
+    } catch (const UsageError&) {
+      throw;
+    } catch (const Error& error) {
+      all[i].refusal = error.what();
+    }
+    count.one_more(tooth.fdi);
+  });
   return all;
 }
 
@@ -343,7 +338,7 @@ void heed_measured(std::vector<ToothOfArch>& teeth, const Prepared& prepared, co
     }
   }
   const std::map<int, LengthExpectation> lengths = given_measured(expected, measured);
-  tbb::parallel_for(std::size_t{0}, teeth.size(), [&](std::size_t i) {
+  parallel_tasks(teeth.size(), [&](std::size_t i) {
     ToothOfArch& tooth = teeth[i];
     if (!tooth.tooth) return;
     give_length(tooth, *prepared[i], lengths.at(tooth.fdi), measured.contains(tooth.fdi), options);
@@ -364,7 +359,7 @@ std::optional<double> millimetres(const std::optional<Approach>& approach) {
 void measure_clearances(CompletedArch& arch, bool upper) {
   std::vector<std::optional<SolidSurface>> surfaces(arch.teeth.size());
   std::vector<const SolidSurface*> teeth(arch.teeth.size(), nullptr);
-  tbb::parallel_for(std::size_t{0}, arch.teeth.size(), [&](std::size_t i) {
+  parallel_tasks(arch.teeth.size(), [&](std::size_t i) {
     const ToothOfArch& tooth = arch.teeth[i];
     if (tooth.tooth && is_upper(tooth.fdi) == upper)
       teeth[i] = &surfaces[i].emplace(tooth_surface(in_millimetres(*tooth.tooth), crown_and_root(*tooth.tooth)));

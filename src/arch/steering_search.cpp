@@ -3,12 +3,12 @@
 #include "arch/steering_search.hpp"
 
 #include "arch/least_change.hpp"
+#include "base/parallel_tasks.hpp"
 #include "mesh/at.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -120,7 +120,7 @@ class Search {
          const std::map<ToothPair, double>& extra)
       : roots_(roots), options_(options) {
     zones_.resize(roots.size());
-    tbb::parallel_for(std::size_t{0}, roots.size(), [&](std::size_t i) { zones_[i] = root_zones(roots[i]); });
+    parallel_tasks(roots.size(), [&](std::size_t i) { zones_[i] = root_zones(roots[i]); });
     for (std::size_t i = 0; i < roots.size(); ++i) {
       const bool fixed = std::none_of(zones_[i].begin(), zones_[i].end(), moves);
       levers_.emplace_back(roots[i], fixed, options);
@@ -274,7 +274,7 @@ class Search {
 
   /// Builds the teeth that are marked, and measures their pairs. False if one of them cannot be made.
   bool place(Stand& stand, const std::vector<char>& marked) const {
-    tbb::parallel_for(std::size_t{0}, roots_.size(), [&](std::size_t i) {
+    parallel_tasks(roots_.size(), [&](std::size_t i) {
       if (!marked[i]) return;
       const SteerableRoot& root = roots_[i];
       std::vector<Point> vertices = vertices_or_none(root, levers_[i].steering(change_of(stand.x, i), false));
@@ -285,7 +285,7 @@ class Search {
     });
     for (std::size_t i = 0; i < roots_.size(); ++i)
       if (marked[i] && !stand.teeth[i] && !stand.x.isZero(0)) return false;
-    tbb::parallel_for(std::size_t{0}, pairs_.size(), [&](std::size_t k) {
+    parallel_tasks(pairs_.size(), [&](std::size_t k) {
       const auto [i, j] = pairs_[k].teeth;
       if (!marked[i] && !marked[j]) return;
       stand.clearances[k].clear();
@@ -328,7 +328,7 @@ class Search {
   /// How the vertices of each tooth move per mm of each variable; of teeth without a say none.
   std::vector<std::array<std::vector<Eigen::Vector3d>, turns>> rates(const std::vector<char>& asked) const {
     std::vector<std::array<std::vector<Eigen::Vector3d>, turns>> all(roots_.size());
-    tbb::parallel_for(std::size_t{0}, turns * roots_.size(), [&](std::size_t n) {
+    parallel_tasks(turns * roots_.size(), [&](std::size_t n) {
       constexpr double by = 0.05;  // mm
       const std::size_t tooth = n / turns, variable = n % turns;
       if (!asked[tooth]) return;

@@ -4,11 +4,10 @@
 // Two-way distances as in registration: P. Besl, N. McKay, "A method for registration of 3-D shapes", 1992.
 #include "completion/mean_crown_agreement.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "completion/lay_teeth.hpp"
 #include "completion/oriented_clouds.hpp"
 #include "mesh/sampling.hpp"
-
-#include <tbb/parallel_for.h>
 
 #include <vector>
 
@@ -44,7 +43,7 @@ std::vector<MeanCrownAgreement> mean_crown_agreement(const PreparedCrown& crown,
   const std::vector<RigidFit> fits = lay_teeth(crown, atlas, teeth);
   const SurfaceSamples surface = sample_surface(crown.mesh, points, 1);
   std::vector<MeanCrownAgreement> result(fits.size());
-  tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t i) {
+  parallel_tasks(result.size(), [&](std::size_t i) {
     const CanonicalFrame& frame = fits[i].frame;
     OrientedPoints laid;
     for (const Point& p : surface.points) laid.points.push_back(frame.to_canonical(p));

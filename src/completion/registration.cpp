@@ -6,6 +6,7 @@
 // P. Krsek, "Robust Euclidean alignment of 3D point sets: the trimmed iterative closest point algorithm", 2005.
 #include "completion/registration.hpp"
 #include "base/option_range.hpp"
+#include "base/parallel_tasks.hpp"
 #include "completion/lay_teeth.hpp"
 #include "completion/oriented_clouds.hpp"
 #include "completion/similarity.hpp"
@@ -14,7 +15,6 @@
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
 
-#include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -332,12 +332,12 @@ TypeGuess guess_fdi_type(const PreparedCrown& crown, const Atlas& atlas, const R
   RegistrationOptions rough = options;
   rough.refined_starts = std::min(2, options.refined_starts);
   rough.iterations = std::min(6, options.iterations);
-  tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) { fit(i, few, rough); });
+  parallel_tasks(frames.size(), [&](std::size_t i) { fit(i, few, rough); });
   std::array<std::size_t, 2 * tooth_type_count> order{};
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&frames](std::size_t a, std::size_t b) { return frames[a].residual_mm < frames[b].residual_mm; });
-  tbb::parallel_for(std::size_t{0}, candidates, [&](std::size_t k) { fit(order[k], points, options); });
+  parallel_tasks(candidates, [&](std::size_t k) { fit(order[k], points, options); });
   TypeGuess guess;
   for (std::size_t i = 0; i < frames.size(); ++i) guess.residuals_mm[i] = frames[i].residual_mm;
   const std::size_t best =
@@ -381,7 +381,7 @@ std::vector<RigidFit> lay_teeth(const PreparedCrown& crown, const Atlas& atlas, 
   const std::vector<Eigen::Matrix3d> rotations = rotations_about_z(start_angles);
 
   std::vector<RigidFit> fits(teeth.size());
-  tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t i) {
+  parallel_tasks(fits.size(), [&](std::size_t i) {
     Laid laid;
     laid.upright = upright_frame(crown.growth_axis, centre, teeth[i] % 2 == 1);
     const OrientedCloud cloud = upright_cloud(points, laid.upright);

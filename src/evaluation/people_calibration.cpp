@@ -9,6 +9,7 @@
 #include "evaluation/people_calibration.hpp"
 
 #include "base/option_range.hpp"
+#include "base/parallel_tasks.hpp"
 #include "base/with_threads.hpp"
 #include "completion/root_length_correction.hpp"
 #include "evaluation/held_out_people.hpp"
@@ -19,7 +20,6 @@
 #include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -127,7 +127,7 @@ std::vector<Measured> measure_all(const ToothFamilies& families, const Completio
   std::mutex reporting;
   std::size_t done = 0;
   with_threads(options.threads, [&] {
-    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+    parallel_tasks(all.size(), [&](std::size_t i) {
       const std::size_t person = i / types.size();
       all[i] = measure(families, models, person, types[i % types.size()], person < options.completed);
       const std::lock_guard guard(reporting);

@@ -6,6 +6,7 @@
 #include "evaluation/template_predictor.hpp"
 
 #include "base/option_range.hpp"
+#include "base/parallel_tasks.hpp"
 #include "completion/similarity.hpp"
 #include "evaluation/root_figures.hpp"
 #include "mesh/adjacency.hpp"
@@ -17,8 +18,6 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "teeth/fdi.hpp"
-
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
 
@@ -198,7 +197,7 @@ TriangleMesh fit_template(const TriangleMesh& crown, const TemplateTooth& tooth,
   const Registration registration(crown, tooth, options);
   const Eigen::Matrix3d upright = Eigen::Quaterniond::FromTwoVectors(tooth.axis, registration.axis).toRotationMatrix();
   std::vector<Fit> fits(static_cast<std::size_t>(options.start_rotations));
-  tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t k) {
+  parallel_tasks(fits.size(), [&](std::size_t k) {
     const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(fits.size());
     fits[k] = fit_from(registration, Eigen::AngleAxisd(angle, registration.axis) * upright);
   });

@@ -5,6 +5,7 @@
 // 2023: crown models, covariances, crowns of two people.
 #include "families/arch_source.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "families/crown_model.hpp"
 #include "families/model_crowns.hpp"
 #include "mesh/geometry.hpp"
@@ -15,7 +16,6 @@
 #include "teeth/fdi.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Dense>
 
@@ -163,12 +163,12 @@ std::size_t arch_row(int fdi) { return static_cast<std::size_t>(fdi % 10 - 1) + 
 ArchSource load_arch_source(const std::filesystem::path& crowns) {
   ArchSource source;
   read_covariances(crowns / "arch_covariances.safetensors", source);
-  tbb::parallel_for(std::size_t{0}, 2 * arch_rows,
-                    [&](std::size_t i) { source.forms[i / 2][i % 2] = load_form(crowns, i / 2, i % 2 == 1); });
+  parallel_tasks(2 * arch_rows,
+                 [&](std::size_t i) { source.forms[i / 2][i % 2] = load_form(crowns, i / 2, i % 2 == 1); });
   for (const char* name : {"patient0", "patient1"}) {
     if (!std::filesystem::is_directory(crowns / name)) continue;
     source.people.emplace_back();
-    tbb::parallel_for(std::size_t{0}, 2 * arch_rows, [&](std::size_t i) {
+    parallel_tasks(2 * arch_rows, [&](std::size_t i) {
       RealCrown& crown = source.people.back()[i / 2][i % 2];
       crown = load_real(crowns / name, i / 2, i % 2 == 1);
       lay_on_model(source.forms[i / 2][i % 2], crown);

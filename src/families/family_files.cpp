@@ -3,6 +3,7 @@
 
 // Reads the templates and the table of mean dimensions (Wheeler; Ash and Nelson, "Wheeler's Dental Anatomy").
 #include "base/option_range.hpp"
+#include "base/parallel_tasks.hpp"
 #include "completion/registration.hpp"
 #include "families/arch_directions.hpp"
 #include "families/mean_teeth.hpp"
@@ -17,7 +18,6 @@
 #include "rhizodont/io.hpp"
 #include "teeth/fdi.hpp"
 
-#include <tbb/parallel_for.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -130,7 +130,7 @@ std::vector<Point> usual_crown(const ToothFamilies& families, const TemplateLoan
 
 // Templates stand in the arch turned each in its own way: what a borrowed one has against the type's own.
 void measure_turns(ToothFamilies& families) {
-  tbb::parallel_for(std::size_t{0}, families.loans.size(), [&](std::size_t i) {
+  parallel_tasks(families.loans.size(), [&](std::size_t i) {
     TemplateLoan& loan = families.loans[i];
     const FamilyTemplate& own = families.templates[static_cast<std::size_t>(loan.type)];
     const TriangleMesh goal = enamel(own);
@@ -244,7 +244,7 @@ class CrownModelLoader {
  private:
   void add(const std::vector<std::pair<int, int>>& pairs) {
     std::vector<FamilyCrownModel> added(2 * pairs.size());
-    tbb::parallel_for(std::size_t{0}, added.size(), [&](std::size_t i) {
+    parallel_tasks(added.size(), [&](std::size_t i) {
       const auto [type, from] = pairs[i / 2];
       const int of = type % 8 == 7 ? type - 1 : type;
       const bool right_side = i % 2 == 1;
@@ -290,7 +290,7 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
     std::iota(wanted.begin(), wanted.end(), 0);
   }
   std::array<Eigen::Vector3d, tooth_type_count> buccal;
-  tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
+  parallel_tasks(wanted.size(), [&](std::size_t i) {
     const int type = wanted[i];
     const auto t = static_cast<std::size_t>(type);
     // From the front to the back by position: neighbours in the file need not be neighbours in the mouth.
@@ -307,7 +307,7 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
   if (!options.registered.empty()) add_registered(families, options, wanted, files, buccal);
   CrownModelLoader(families, folder / "crowns" / "ssm", options.crown_modes, buccal).load(wanted);
   families.crown_axes.fill(Eigen::Vector3d::UnitZ());
-  tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
+  parallel_tasks(wanted.size(), [&](std::size_t i) {
     const SyntheticTooth mean = mean_tooth(families, wanted[i]);
     families.crown_axes[static_cast<std::size_t>(wanted[i])] =
         Eigen::AngleAxisd(-mean.crown_turn, Eigen::Vector3d::UnitZ()) * growth_axis(mean_crown(mean));

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "families/mean_teeth.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "families/crown_crop.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/sampling.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
-
-#include <tbb/parallel_for.h>
 
 #include <utility>
 
@@ -40,7 +39,7 @@ TriangleMesh mean_crown(const SyntheticTooth& mean) {
 Atlas make_atlas(const ToothFamilies& families, std::size_t points) {
   if (points < 64) throw UsageError("A mean crown needs at least 64 points.");
   Atlas atlas;
-  tbb::parallel_for(0, tooth_type_count, [&](int type) {
+  parallel_tasks(tooth_type_count, [&](int type) {
     const SyntheticTooth tooth = mean_tooth(families, type);
     const TriangleMesh crown = mean_crown(tooth);
     const CanonicalFrame frame = frame_of_crop(crown, -tooth.crown_turn);

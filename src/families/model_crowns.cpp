@@ -5,6 +5,7 @@
 // Delaunay-based surface reconstruction algorithm", The Visual Computer 20, 2004.
 #include "families/model_crowns.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "families/arch_directions.hpp"
 #include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
@@ -14,7 +15,6 @@
 
 #include <CGAL/Advancing_front_surface_reconstruction.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -139,14 +139,14 @@ std::vector<ModelCrown> load_model_crowns(const std::filesystem::path& folder) {
     const auto place = static_cast<int>(i / 2);
     return place < teeth_of_jaw ? place : place - teeth_of_jaw + tooth_type_count / 2;
   };
-  tbb::parallel_for(std::size_t{0}, models.size(), [&](std::size_t i) {
+  parallel_tasks(models.size(), [&](std::size_t i) {
     const bool right_side = i % 2 == 1;
     models[i] = load_crown_shape_model(
         folder / ("crown_ssm_" + std::to_string(fdi_of_type(type_of(i), right_side)) + ".safetensors"), all_modes,
         right_side);
   });
   std::vector<ModelCrown> crowns(models.size());
-  tbb::parallel_for(std::size_t{0}, models.size(), [&](std::size_t i) {
+  parallel_tasks(models.size(), [&](std::size_t i) {
     std::vector<Eigen::Vector3d> arch;  // of the same jaw and side, from the front to the back
     const std::size_t jaw = i / (2 * teeth_of_jaw);
     for (std::size_t k = 0; k < teeth_of_jaw; ++k)

@@ -8,6 +8,7 @@
 #include "families/register_tooth.hpp"
 
 #include "base/option_range.hpp"
+#include "base/parallel_tasks.hpp"
 #include "completion/similarity.hpp"
 #include "families/tooth_template.hpp"
 #include "mesh/adjacency.hpp"
@@ -161,7 +162,7 @@ RigidStart lay_template(const TriangleMesh& tooth, const Target& target, const T
   const Point middle_from = area_centroid(source), middle_to = area_centroid(tooth);
   const double scale = std::sqrt(surface_area(tooth) / surface_area(source));
   std::vector<RigidStart> starts(2 * static_cast<std::size_t>(turns));
-  tbb::parallel_for(std::size_t{0}, starts.size(), [&](std::size_t i) {
+  parallel_tasks(starts.size(), [&](std::size_t i) {
     const Eigen::Vector3d along = i % 2 == 0 ? to : Eigen::Vector3d(-to);
     const double angle = 2 * std::numbers::pi * static_cast<double>(i / 2) / turns;
     Similarity map;
@@ -176,8 +177,8 @@ RigidStart lay_template(const TriangleMesh& tooth, const Target& target, const T
   starts.resize(std::min(starts.size(), static_cast<std::size_t>(std::max(1, refined))));
   if (refined > 0) {
     constexpr int more_iterations = 40;
-    tbb::parallel_for(std::size_t{0}, starts.size(),
-                      [&](std::size_t i) { starts[i] = target.lay(samples, starts[i].map, more_iterations); });
+    parallel_tasks(starts.size(),
+                   [&](std::size_t i) { starts[i] = target.lay(samples, starts[i].map, more_iterations); });
   }
   return *std::min_element(starts.begin(), starts.end(),
                            [](const RigidStart& a, const RigidStart& b) { return a.residual < b.residual; });
@@ -355,8 +356,8 @@ TemplateFile load_template_file(const std::filesystem::path& folder, int type) {
 
 std::array<TemplateFile, tooth_type_count> load_template_files(const std::filesystem::path& folder) {
   std::array<TemplateFile, tooth_type_count> files;
-  tbb::parallel_for(0, tooth_type_count,
-                    [&](int type) { files[static_cast<std::size_t>(type)] = load_template_file(folder, type); });
+  parallel_tasks(tooth_type_count,
+                 [&](int type) { files[static_cast<std::size_t>(type)] = load_template_file(folder, type); });
   return files;
 }
 

@@ -3,6 +3,7 @@
 #include "families/registered_templates.hpp"
 
 #include "base/lower_case.hpp"
+#include "base/parallel_tasks.hpp"
 #include "families/self_crossing.hpp"
 #include "families/tooth_template.hpp"
 #include "mesh/closest_point.hpp"
@@ -11,7 +12,6 @@
 #include "teeth/label_numbers.hpp"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -132,7 +132,7 @@ std::vector<FamilyTemplate> load_registered_teeth(const std::filesystem::path& f
   const NearestVertexIndex full(of_type.mesh.vertices);
   std::vector<std::uint8_t> crown;
   for (const Point& p : light.vertices) crown.push_back(of_type.crown[static_cast<std::size_t>(full.nearest(p).index)]);
-  tbb::parallel_for(std::size_t{0}, files.size(), [&](std::size_t i) {
+  parallel_tasks(files.size(), [&](std::size_t i) {
     const TriangleMesh registered = load_mesh(files[i]).mesh;
     if (registered.triangles != of_type.mesh.triangles)
       throw InputError(fmt::format(

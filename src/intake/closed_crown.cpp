@@ -3,6 +3,7 @@
 
 #include "intake/closed_crown.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "completion/registration.hpp"
 #include "intake/crown_input.hpp"
 #include "mesh/geometry.hpp"
@@ -11,8 +12,6 @@
 #include "skirt/made_cap.hpp"
 #include "skirt/skirt.hpp"
 #include "teeth/fdi.hpp"
-
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -89,13 +88,13 @@ std::vector<Candidate> for_known_type(const TriangleMesh& crown, const Atlas& at
   const MeanCrown& mean = atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))];
   const auto directions = starting_directions();
   std::vector<FittedAxis> axes(directions.size());
-  tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t i) {
+  parallel_tasks(directions.size(), [&](std::size_t i) {
     const RigidFit fit = fit_mean_crown(points, mean, is_right_side(fdi), false, directions[i]);
     axes[i] = {fit.frame.direction_to_world(Eigen::Vector3d::UnitZ()), fit.residual_mm};
   });
   axes = distinct(std::move(axes));
   std::vector<Candidate> candidates(axes.size());
-  tbb::parallel_for(std::size_t{0}, axes.size(), [&](std::size_t i) {
+  parallel_tasks(axes.size(), [&](std::size_t i) {
     candidates[i] = along_axis(crown, axes[i].axis);
     candidates[i].badness *= misfit(axes[i].residual_mm);
   });
@@ -105,7 +104,7 @@ std::vector<Candidate> for_known_type(const TriangleMesh& crown, const Atlas& at
 std::vector<Candidate> for_unknown_type(const TriangleMesh& crown, const Atlas& atlas) {
   const auto directions = starting_directions();
   std::vector<Candidate> candidates(directions.size());
-  tbb::parallel_for(std::size_t{0}, directions.size(), [&](std::size_t i) {
+  parallel_tasks(directions.size(), [&](std::size_t i) {
     candidates[i] = along_axis(crown, directions[i]);
     if (candidates[i].cap.triangles > 0) candidates[i] = along_axis(crown, -candidates[i].cap.direction);
   });

@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "networks/completion_network.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "networks/adapointr.hpp"
 #include "networks/neighbours.hpp"
 #include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
-#include <exception>
 
 namespace rhizodont {
 namespace {
@@ -78,16 +76,8 @@ CompletedPoints CompletionNetwork::complete(std::span<const Eigen::Vector3f> cro
 std::vector<CompletedPoints> CompletionNetwork::complete(std::span<const CrownPoints> crowns) const {
   std::vector<CompletedPoints> result(crowns.size());
   // Crown by crown, not layer by layer: a crown's matrices stay in the cache, and two threads need not meet in between.
-  std::vector<std::exception_ptr> failures(crowns.size());
-  tbb::parallel_for(std::size_t{0}, crowns.size(), [&](std::size_t i) {
-    try {
-      result[i] = complete(crowns[i].points, crowns[i].type, crowns[i].form_axis);
-    } catch (const Error&) {
-      failures[i] = std::current_exception();
-    }
-  });
-  for (const std::exception_ptr& failure : failures)
-    if (failure) std::rethrow_exception(failure);
+  parallel_tasks(crowns.size(),
+                 [&](std::size_t i) { result[i] = complete(crowns[i].points, crowns[i].type, crowns[i].form_axis); });
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include "pictures/render.hpp"
 
 #include "base/option_range.hpp"
+#include "base/parallel_tasks.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/mesh_checks.hpp"
 #include "rhizodont/error.hpp"
@@ -322,7 +323,7 @@ Image render(const std::vector<RenderItem>& items, const RenderOptions& options)
   const auto columns = static_cast<int>(options.views.size());
   Image sheet{columns * options.width, static_cast<int>(items.size()) * options.height, {}};
   sheet.rgb.resize(3 * static_cast<std::size_t>(sheet.width) * static_cast<std::size_t>(sheet.height));
-  tbb::parallel_for(0, static_cast<int>(scenes.size()), [&](int k) {
+  parallel_tasks(static_cast<int>(scenes.size()), [&](int k) {
     Tile tile(s * options.width, s * options.height, scale, options.wireframe, 1.1F * static_cast<float>(s));
     tile.draw(scenes[static_cast<std::size_t>(k)]);
     copy_to_sheet(tile, options, k % columns, k / columns, sheet);

@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include <numeric>
 
 #include "base/option_range.hpp"
+#include "base/parallel_tasks.hpp"
 #include "poisson/bspline.hpp"
 #include "poisson/multigrid.hpp"
 #include "poisson/normal_field.hpp"
@@ -250,12 +250,11 @@ IndicatorFunction solve_indicator(const OrientedPoints& samples, std::span<const
   // Both go through the samples in order, so each has a thread of its own.
   std::vector<std::vector<ScreeningSample>> screening;
   LevelField load, pull(field_size(levels), 0.0);
-  tbb::parallel_invoke([&] { load = normal_load(levels, unit, shares, depths.depth); },
-                       [&] {
-                         screening =
-                             screening_samples(levels, unit.points, shares, depths.width, weights, options.screening);
-                         add_screening_load(levels, screening, 0.5, pull);
-                       });
+  parallel_pair([&] { load = normal_load(levels, unit, shares, depths.depth); },
+                [&] {
+                  screening = screening_samples(levels, unit.points, shares, depths.width, weights, options.screening);
+                  add_screening_load(levels, screening, 0.5, pull);
+                });
   std::ranges::transform(load, pull, load.begin(), std::plus{});
   const PoissonSolution solution =
       solve_screened_poisson(levels, screening, load, options.tolerance, options.max_cycles);

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/parallel_tasks.hpp"
 #include "poisson/bspline.hpp"
 
 namespace rhizodont {
@@ -63,7 +64,7 @@ LevelCycle::LevelCycle(const std::vector<SplineLevel>& levels,
     seen[l].insert(seen[l].end(), seen[l + 1].begin(), seen[l + 1].end());
     seen[l] = merge_samples(levels[l], seen[l]);
   }
-  tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t l) {
+  parallel_tasks(levels.size(), [&](std::size_t l) {
     Level& level = levels_[l];
     level.spline = &levels[l];
     level.samples = BlockSamples<float>(levels[l], seen[l]);

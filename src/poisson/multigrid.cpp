@@ -7,13 +7,13 @@
 #include "poisson/multigrid.hpp"
 
 #include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <optional>
 
+#include "base/parallel_tasks.hpp"
 #include "poisson/bspline.hpp"
 #include "poisson/level_cycle.hpp"
 
@@ -67,8 +67,7 @@ LevelField accumulated(const std::vector<SplineLevel>& levels, const LevelField&
 ScreenedLaplacian::ScreenedLaplacian(const std::vector<SplineLevel>& levels,
                                      const std::vector<std::vector<ScreeningSample>>& samples)
     : levels_(levels), samples_(levels.size()), sums_(field_size(levels)), outer_(field_size(levels)) {
-  tbb::parallel_for(std::size_t{0}, levels.size(),
-                    [&](std::size_t l) { samples_[l] = BlockSamples<double>(levels[l], samples[l]); });
+  parallel_tasks(levels.size(), [&](std::size_t l) { samples_[l] = BlockSamples<double>(levels[l], samples[l]); });
 }
 
 void ScreenedLaplacian::apply(const LevelField& coefficients, LevelField& out) {
@@ -127,7 +126,7 @@ PoissonSolution solve_screened_poisson(const std::vector<SplineLevel>& levels,
 
   std::optional<ScreenedLaplacian> laplacian;
   std::optional<LevelCycle> cycle_on_levels;
-  tbb::parallel_invoke([&] { laplacian.emplace(levels, samples); }, [&] { cycle_on_levels.emplace(levels, samples); });
+  parallel_pair([&] { laplacian.emplace(levels, samples); }, [&] { cycle_on_levels.emplace(levels, samples); });
   LevelField r = load, p(load.size(), 0.0), q(load.size(), 0.0), z(load.size(), 0.0);
   std::vector<float> single_r(load.size()), single_z(load.size());
   const auto precondition = [&](double size) {

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel_tasks.hpp"
 #include "poisson/bspline.hpp"
 
 namespace rhizodont {
@@ -64,10 +65,9 @@ LevelField normal_load(const std::vector<SplineLevel>& levels, const OrientedPoi
                        std::span<const double> shares, std::span<const double> depths) {
   VectorField own, sums;
   own.fill(LevelField(field_size(levels), 0.0));
-  tbb::parallel_for(std::size_t{0}, levels.size(),
-                    [&](std::size_t l) { splat(levels[l], static_cast<int>(l), samples, shares, depths, own); });
-  tbb::parallel_for(std::size_t{0}, std::size_t{3},
-                    [&](std::size_t axis) { sums[axis] = accumulated(levels, own[axis]); });
+  parallel_tasks(levels.size(),
+                 [&](std::size_t l) { splat(levels[l], static_cast<int>(l), samples, shares, depths, own); });
+  parallel_tasks(std::size_t{3}, [&](std::size_t axis) { sums[axis] = accumulated(levels, own[axis]); });
   LevelField load(field_size(levels)), outer(field_size(levels));
   for (std::size_t l = levels.size(); l-- > 0;) {
     const SplineLevel& level = levels[l];

@@ -5,12 +5,11 @@
 // by eight nodes at a time.
 #include "poisson/spline_level.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 
+#include "base/parallel_tasks.hpp"
 #include "poisson/bspline.hpp"
 
 namespace rhizodont {
@@ -184,7 +183,7 @@ std::vector<SplineLevel> build_levels(const LevelLayout& layout, const std::vect
                                       const LevelOptions& options) {
   std::vector<SplineLevel> levels(static_cast<std::size_t>(layout.count));
   std::vector<std::vector<FunctionBox>> boxes(levels.size());
-  tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t l) {
+  parallel_tasks(levels.size(), [&](std::size_t l) {
     SplineLevel& level = levels[l];
     level.degree = options.degree;
     level.spacing = layout.spacing(static_cast<int>(l));
@@ -198,7 +197,7 @@ std::vector<SplineLevel> build_levels(const LevelLayout& layout, const std::vect
   });
   for (std::size_t l = levels.size() - 1; l-- > 0;)
     if (!levels[l].complete) mark_parents(levels[l], levels[l + 1]);
-  tbb::parallel_for(std::size_t{0}, levels.size(), [&](std::size_t l) {
+  parallel_tasks(levels.size(), [&](std::size_t l) {
     number_blocks(levels[l]);
     activate(levels[l], boxes[l]);
   });

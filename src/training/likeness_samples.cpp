@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "training/likeness_samples.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "completion/tooth_classifier.hpp"
 #include "families/crown_crop.hpp"
 #include "families/unlike_crowns.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/frame.hpp"
 #include "training/sample_numbers.hpp"
-
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
 
@@ -117,7 +116,7 @@ std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families,
 LabelledPanoramas make_likeness_panoramas(const ToothFamilies& families, const std::vector<ModelCrown>& models,
                                           int per_type) {
   std::vector<std::vector<LikenessSample>> of_tooth(static_cast<std::size_t>(per_type) * tooth_type_count);
-  tbb::parallel_for(std::size_t{0}, of_tooth.size(), [&](std::size_t i) {
+  parallel_tasks(of_tooth.size(), [&](std::size_t i) {
     try {
       of_tooth[i] =
           make_likeness_samples(families, models, static_cast<int>(i % tooth_type_count), i / tooth_type_count);

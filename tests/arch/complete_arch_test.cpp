@@ -116,6 +116,23 @@ TEST(CompleteArch, MemoryGivesTheVerySame) {
   expect_same(complete_arch(other, models(), options, {}, memory), complete_arch(other, models(), options));
 }
 
+TEST(CompleteArch, IsCancelledByWhatTheCallbackThrows) {
+  const LabelledScan scan = row_of({{"crown_36.stl", 36}, {"crown_34.ply", 34}, {"crown_36.stl", 75}});
+  ArchOptions options;
+  options.tooth.e = 1.5;
+  ArchMemory memory;
+  struct Cancelled {};
+  for (int after = 1; after <= 3; ++after)
+    EXPECT_THROW(complete_arch(
+                     scan, models(), options,
+                     [&](int done, int, int) {
+                       if (done >= after) throw Cancelled{};
+                     },
+                     memory),
+                 Cancelled);
+  EXPECT_TRUE(memory.teeth.empty());
+}
+
 TEST(CompleteArch, IsTheSameForAnyNumberOfThreads) {
   const LabelledScan scan = row_of({{"crown_36.stl", 36}, {"crown_34.ply", 34}});
   ArchOptions one;

@@ -57,9 +57,10 @@ export const test = base.extend<Fixtures, { url: string }>({
     const { url, child } = await served();
     await use(url);
     child.removeAllListeners('exit');
+    const end = new Promise((resolve) => child.on('exit', resolve));
+    expect([child.exitCode, child.signalCode], 'the program still runs').toEqual([null, null]);
     child.kill('SIGTERM');
-    const code = await new Promise((resolve) => child.on('exit', resolve));
-    expect(code, 'the program ends as it should').toBe(0);
+    expect(await end, 'the program ends as it should').toBe(0);
   }, { scope: 'worker' }],
   faults: [async ({ page }, use) => {
     const faults: string[] = [];
