@@ -76,21 +76,20 @@ std::vector<Point> cutting_points(const JoinedTooth& tooth, const std::vector<st
   return points;
 }
 
-/// Remeshes the root; where that makes the tooth cut itself, the triangles around are left as they were.
-void improve_triangles(const Ground& ground, const FuseOptions& options, FusedTooth& fused) {
+/// Where the remeshed root makes the tooth cut itself, the triangles around are left as they were in `restored`.
+void leave_cutting_triangles(const Ground& ground, const FuseOptions& options, const JoinedTooth& restored,
+                             FusedTooth& fused) {
   std::vector<Point> frozen;
   for (int i = 1; i <= options.remesh_attempts; ++i) {
-    JoinedTooth remeshed = fused.tooth;
-    const double radius = i * ground.lengths.root();
-    const RootRemeshing done = remesh_root(remeshed, ground.walk, ground.lengths, frozen, radius, options.remesh);
-    const auto cuts = self_intersecting_triangles(remeshed.mesh, ground.crown.triangles.size());
-    if (cuts.empty()) {
-      fused.tooth = std::move(remeshed);
-      fused.remeshing = done;
-      return;
-    }
-    const std::vector<Point> more = cutting_points(remeshed, cuts);
+    const auto cuts = self_intersecting_triangles(fused.tooth.mesh, ground.crown.triangles.size());
+    if (cuts.empty()) return;
+    const std::vector<Point> more = cutting_points(fused.tooth, cuts);
     frozen.insert(frozen.end(), more.begin(), more.end());
+    fused.tooth = restored;
+    fused.remeshing = {};
+    if (i == options.remesh_attempts) break;
+    const double radius = (i + 1) * ground.lengths.root();
+    fused.remeshing = remesh_root(fused.tooth, ground.walk, ground.lengths, frozen, radius, options.remesh);
   }
   fused.warnings.push_back("The root's triangles could not be improved.");
 }
@@ -108,15 +107,11 @@ Joining join(const Ground& ground, const FuseOptions& options, const SeparationO
   return joining;
 }
 
-/// Remeshes and smooths with one test for self-intersection at the end; nothing if the tooth does not pass.
-std::optional<FusedTooth> finished_at_once(const Ground& ground, const JoinedTooth& restored,
-                                           const FuseOptions& options, const TransitionOptions& transition,
+/// Smooths the remeshed tooth with one test for self-intersection at the end; nothing if it does not pass.
+std::optional<FusedTooth> finished_at_once(const FusedTooth& remeshed, const TransitionOptions& transition,
                                            FuseSeconds& spent) {
-  FusedTooth fused;
-  fused.tooth = restored;
+  FusedTooth fused = remeshed;
   Stopwatch watch;
-  fused.remeshing = remesh_root(fused.tooth, ground.walk, ground.lengths, {}, 0, options.remesh);
-  spent.remeshing += watch.restart();
   TransitionOptions quick = transition;
   quick.cut_rounds = 1;
   fused.transition = smooth_transition(fused.tooth, quick);
@@ -126,12 +121,10 @@ std::optional<FusedTooth> finished_at_once(const Ground& ground, const JoinedToo
 }
 
 /// The same with a test after each step, so that the step that would break the tooth can be mended or left out.
-FusedTooth finished_step_by_step(const Ground& ground, JoinedTooth restored, const FuseOptions& options,
-                                 const TransitionOptions& transition, FuseSeconds& spent) {
-  FusedTooth fused;
-  fused.tooth = std::move(restored);
+FusedTooth finished_step_by_step(const Ground& ground, const JoinedTooth& restored, FusedTooth fused,
+                                 const FuseOptions& options, const TransitionOptions& transition, FuseSeconds& spent) {
   Stopwatch watch;
-  improve_triangles(ground, options, fused);
+  leave_cutting_triangles(ground, options, restored, fused);
   spent.remeshing += watch.restart();
   fused.transition = smooth_transition(fused.tooth, transition);
   spent.transition += watch.restart();
@@ -139,20 +132,29 @@ FusedTooth finished_step_by_step(const Ground& ground, JoinedTooth restored, con
   return fused;
 }
 
+/// Remeshes the root and smooths the seam.
+FusedTooth finished(const Ground& ground, const JoinedTooth& restored, const FuseOptions& options, FuseSeconds& spent) {
+  TransitionOptions transition = options.transition;
+  transition.gap = ground.gap;
+  FusedTooth remeshed;
+  remeshed.tooth = restored;
+  Stopwatch watch;
+  remeshed.remeshing = remesh_root(remeshed.tooth, ground.walk, ground.lengths, {}, 0, options.remesh);
+  spent.remeshing += watch.restart();
+  if (std::optional<FusedTooth> fused = finished_at_once(remeshed, transition, spent)) return *std::move(fused);
+  return finished_step_by_step(ground, restored, std::move(remeshed), options, transition, spent);
+}
+
 /// One attempt's own tooth, its counts and its warnings; the time goes to the sum of all.
 FusedTooth attempt(const Ground& ground, const FuseOptions& options, const SeparationOptions& separation,
                    FuseSeconds& spent) {
   const Joining joining = join(ground, options, separation, spent);
-  TransitionOptions transition = options.transition;
-  transition.gap = ground.gap;
   Stopwatch watch;
-  JoinedTooth restored = restore_crown(ground.crown, joining, options.restore);
+  const JoinedTooth restored = restore_crown(ground.crown, joining, options.restore);
   spent.restoring += watch.restart();
   if (!diagnose(restored.mesh).is_closed_solid())
     throw NoResultError("Crown and root together do not form a solid of one piece.");
-  std::optional<FusedTooth> at_once = finished_at_once(ground, restored, options, transition, spent);
-  FusedTooth fused =
-      at_once ? *std::move(at_once) : finished_step_by_step(ground, std::move(restored), options, transition, spent);
+  FusedTooth fused = finished(ground, restored, options, spent);
   fused.root_sites = static_cast<int>(joining.sites.size()) - joining.crown_vertices - joining.steiner_points;
   fused.crown_triangles_direct = joining.crown_triangles_direct;
   fused.steiner_points = joining.steiner_points;
@@ -165,15 +167,17 @@ FusedTooth attempt(const Ground& ground, const FuseOptions& options, const Separ
   return fused;
 }
 
-/// The smallest angle of new triangles relative to what is wanted there: 1 or more if it is reached everywhere.
+/// The smallest angle of new triangles relative to what is wanted there: 1 or more if it is reached everywhere. Those
+/// between vertices of the crown alone fill its notches, and do not hang on how edges grow.
 double least_angle_share(const JoinedTooth& tooth, const TransitionOptions& wanted) {
   double least = std::numeric_limits<double>::max();
   for (std::size_t t = static_cast<std::size_t>(tooth.crown_triangles); t < tooth.mesh.triangles.size(); ++t) {
     const Triangle& tri = tooth.mesh.triangles[t];
-    const bool at_border = std::any_of(tri.begin(), tri.end(), [&](int v) { return v < tooth.crown_vertices; });
+    const auto of_crown = std::count_if(tri.begin(), tri.end(), [&](int v) { return v < tooth.crown_vertices; });
+    if (of_crown == 3) continue;
     const auto angles = triangle_angles(tooth.mesh, t);
     const double smallest = *std::min_element(angles.begin(), angles.end()) * 180 / std::numbers::pi;
-    least = std::min(least, smallest / (at_border ? wanted.border_angle : wanted.inner_angle));
+    least = std::min(least, smallest / (of_crown > 0 ? wanted.border_angle : wanted.inner_angle));
   }
   return least;
 }
