@@ -29,6 +29,7 @@
 #include <cmath>
 #include <exception>
 #include <mutex>
+#include <numbers>
 #include <utility>
 
 namespace rhizodont {
@@ -155,23 +156,36 @@ struct Attempt {
 
 std::vector<Attempt> attempts_for(int fdi, const std::map<int, ToothDirections>& directions,
                                   const CompleteOptions& tooth) {
-  Attempt first{tooth, ""};
-  first.options.fdi = fdi;
-  first.options.threads = 0;
+  Attempt alone{tooth, ""};
+  alone.options.fdi = fdi;
+  alone.options.threads = 0;
   std::vector<Attempt> attempts;
   if (const auto found = directions.find(fdi); found != directions.end()) {
-    attempts.push_back(first);
+    attempts.push_back(alone);
     attempts.back().options.directions = found->second;
-    first.warning =
+    alone.warning =
         "No root could be made with the tooth standing as its neighbours do; it stands as its border tells.";
   }
-  attempts.push_back(first);
+  attempts.push_back(alone);
   if (tooth.skirt) {
-    first.options.skirt.reset();
-    first.warning = "No root could be made without what seemed to be gum or web on the crown; that was kept.";
-    attempts.push_back(first);
+    alone.options.skirt.reset();
+    alone.warning = "No root could be made without what seemed to be gum or web on the crown; that was kept.";
+    attempts.push_back(alone);
   }
   return attempts;
+}
+
+/// What is left of a crown may be hung on its border anyhow, upside down too; its neighbours know better.
+void require_upright(const CompletedTooth& tooth, const std::optional<ToothDirections>& place) {
+  constexpr double most_off = 60;  // degrees; borders of real scans lean by up to 40
+  if (!place) return;
+  const double cosine = std::clamp(tooth.record.frame.growth_axis.dot(place->occlusal), -1.0, 1.0);
+  const double off = std::acos(cosine) * 180 / std::numbers::pi;
+  if (off > most_off)
+    throw NoResultError(
+        fmt::format("The tooth would stand {:.0f} degrees off the way that its neighbours tell. Is enough of its crown "
+                    "there, and is it erupted?",
+                    off));
 }
 
 /// Who labelled the crown took all of it for tooth.
@@ -188,17 +202,24 @@ void warn_of_loss(CompletionRecord& record) {
 /// The first attempt that gives a tooth. Throws as the first one where none does.
 MadeTooth complete_one(const TriangleMesh& crown, const std::vector<Attempt>& attempts,
                        const CompletionModels& models) {
+  const std::optional<ToothDirections>& place = attempts.front().options.directions;
   std::exception_ptr refused;
+  std::optional<bool> unusable;  // with a skirt that is looked for, or kept
   for (const Attempt& attempt : attempts) {
+    if (unusable == attempt.options.skirt.has_value()) continue;
     try {
       const PreparedTooth prepared = prepare_tooth(crown, models, attempt.options);
       CompletedTooth tooth = finish_tooth(prepared, attempt.options.steering, attempt.options.transition);
+      require_upright(tooth, place);
       mark_contacts(tooth);
       warn_of_loss(tooth.record);
       if (!attempt.warning.empty()) tooth.record.warnings.push_back(attempt.warning);
       return {prepared, std::move(tooth), ""};
     } catch (const UsageError&) {
       throw;
+    } catch (const InputError&) {  // however it stands
+      unusable = attempt.options.skirt.has_value();
+      if (!refused) refused = std::current_exception();
     } catch (const Error&) {
       if (!refused) refused = std::current_exception();
     }

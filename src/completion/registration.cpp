@@ -272,7 +272,9 @@ CrownFrame frame_from(const OrientedPoints& points, const Eigen::Vector3d& axis,
   return crown_frame(lay(points, upright_frame(axis, centre, right_side), mean, options));
 }
 
-/// As `frame_from`, with +y not far from `buccal`: where the registration turns away from it, +y is `buccal` itself.
+/// As `frame_from`, of a crown whose axis and `buccal` the arch tells: +y is not far from `buccal`, and is `buccal`
+/// itself where the registration turns away from it. The form leans against an axis that knows of the tooth's place,
+/// not against a border alone; either is as good, so half of the lean is told.
 CrownFrame frame_near(const OrientedPoints& points, const Eigen::Vector3d& axis, const Point& centre, bool right_side,
                       const Eigen::Vector3d& buccal, const MeanCrown& mean, const RegistrationOptions& options) {
   constexpr double furthest_start = std::numbers::pi / 4, furthest_found = std::numbers::pi / 3;
@@ -284,6 +286,7 @@ CrownFrame frame_near(const OrientedPoints& points, const Eigen::Vector3d& axis,
   for (int i = -steps; i <= steps; ++i) starts.push_back(about_z(furthest_start * i / steps));
   const Laid laid = lay(points, upright, mean, starts, options);
   CrownFrame found = crown_frame(laid);
+  found.form_axis /= 2;
   if (std::abs(turn_about_z(laid)) > furthest_found) {
     found.frame = upright;
     found.form_axis.setZero();

@@ -152,7 +152,8 @@ GuidingCloud assemble_guiding_cloud(const PreparedCrown& crown, const OrientedPo
                                     const GuidingCloudOptions& options) {
   require_in_range(options);
   SortedPrediction sorted = sort_prediction(crown, predicted, options.gap);
-  if (sorted.beyond.points.size() < 32) throw NoResultError("The network predicts no root beyond this crown.");
+  if (sorted.beyond.points.size() < 32)
+    throw NoResultError("The network predicts no root beyond this crown. Is enough of it there, and is it erupted?");
   correct(sorted.beyond.points, sorted.on_crown, options.correction_reach);
 
   GuidingCloud cloud;

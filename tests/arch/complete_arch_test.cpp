@@ -116,6 +116,20 @@ TEST(CompleteArch, MemoryGivesTheVerySame) {
   expect_same(complete_arch(other, models(), options, {}, memory), complete_arch(other, models(), options));
 }
 
+TEST(CompleteArch, AToothThatWouldStandUpsideDownIsRefused) {
+  LabelledScan scan = row_of({{"crown_36.stl", 37}, {"crown_36.stl", 36}, {"crown_34.ply", 35}, {"crown_34.ply", 34}});
+  Eigen::AlignedBox3d box;
+  for (std::size_t v = 0; v < scan.fdi.size(); ++v)
+    if (scan.fdi[v] == 36) box.extend(scan.mesh.vertices[v]);
+  for (std::size_t v = 0; v < scan.fdi.size(); ++v)  // half a turn about x
+    if (scan.fdi[v] == 36)
+      scan.mesh.vertices[v].tail<2>() = 2 * box.center().tail<2>() - scan.mesh.vertices[v].tail<2>();
+  ArchOptions options;
+  options.tooth.e = 1.5;
+  const CompletedArch arch = complete_arch(scan, models(), options);
+  for (const ToothOfArch& tooth : arch.teeth) EXPECT_EQ(tooth.tooth.has_value(), tooth.fdi != 36) << tooth.refusal;
+}
+
 TEST(CompleteArch, IsCancelledByWhatTheCallbackThrows) {
   const LabelledScan scan = row_of({{"crown_36.stl", 36}, {"crown_34.ply", 34}, {"crown_36.stl", 75}});
   ArchOptions options;
