@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace rhizodont::command_line {
 namespace {
 
@@ -20,10 +22,17 @@ std::string quoted(const std::string& text) { return "'" + replaced(text, "'", "
 
 std::string function_of(const DescribedCommand& command) { return "_" + replaced(joined_path(command, "_"), "-", "_"); }
 
+bool has_argument_with_choices(const DescribedCommand& command) {
+  return std::any_of(command.arguments.begin(), command.arguments.end(),
+                     [](const DescribedOption& argument) { return !argument.choices.empty(); });
+}
+
 // bash
 
 std::string words_of(const DescribedCommand& command) {
   std::string words;
+  for (const DescribedOption& argument : command.arguments)
+    for (const std::string& choice : argument.choices) words += choice + " ";
   for (const DescribedCommand& below : command.commands) words += below.name() + " ";
   for (const DescribedOption& option : command.options)
     for (const std::string& name : option.names) words += name + " ";
@@ -83,6 +92,9 @@ std::string zsh_function(const DescribedCommand& command) {
   text += "  _arguments";
   if (has_commands) text += " -C";
   for (const DescribedOption& option : command.options) text += zsh_option(option);
+  for (const DescribedOption& argument : command.arguments)
+    if (!argument.choices.empty())
+      text += fmt::format(" \\\n    '1:{}:({})'", argument.names.front(), fmt::join(argument.choices, " "));
   if (!has_commands) return text + " \\\n    '*:file:_files'\n}\n";
   text +=
       " \\\n    '1: :->command' \\\n    '*:: :->arguments'\n  case $state in\n    command)\n      local -a commands\n  "
@@ -134,7 +146,8 @@ std::string bash_completion(const DescribedCommand& program) {
     const std::string path = quoted(joined_path(*command, " "));
     if (command != &program) paths += (paths.empty() ? "" : " | ") + path;
     words += fmt::format("        {}) words={} ;;\n", path, quoted(words_of(*command)));
-    if (!command->commands.empty()) with_commands += (with_commands.empty() ? "" : " | ") + path;
+    if (!command->commands.empty() || has_argument_with_choices(*command))
+      with_commands += (with_commands.empty() ? "" : " | ") + path;
   }
   return fmt::format(
       R"(# {0} in bash; written by '{0} shell-completion bash'
@@ -184,6 +197,10 @@ std::string fish_completion(const DescribedCommand& program) {
     for (const DescribedCommand& below : command->commands)
       text += fmt::format("{}{} -a {} -d {}\n", beginning, command == &program ? " -f" : "", below.name(),
                           fish_quoted(below.text));
+    for (const DescribedOption& argument : command->arguments)
+      if (!argument.choices.empty())
+        text +=
+            fmt::format("{} -f -a {}\n", beginning, fish_quoted(fmt::format("{}", fmt::join(argument.choices, " "))));
     for (const DescribedOption& option : command->options) text += beginning + fish_option(option) + "\n";
   }
   return text;

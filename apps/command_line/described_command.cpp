@@ -9,7 +9,10 @@
 namespace rhizodont::command_line {
 namespace {
 
-/// Of "TEXT:{ply,stl}" the words, of "value in {drop->0,keep->1} OR {0,1}" the first ones.
+constexpr std::string_view others = "...";
+
+/// Of "TEXT:{ply,stl}" the words, of "value in {drop->0,keep->1} OR {0,1}" the first ones. A last one of "..." says
+/// that there may be others.
 std::vector<std::string> choices_in(std::string_view type) {
   std::vector<std::string> choices;
   const std::size_t begin = type.find('{'), end = type.find('}');
@@ -44,6 +47,8 @@ DescribedOption describe_option(const CLI::Option& option) {
   if (option.get_items_expected_max() == 0) return result;
   const std::string type = option.get_type_name();
   result.choices = choices_in(type);
+  result.takes_other_words = !result.choices.empty() && result.choices.back() == others;
+  if (result.takes_other_words) result.choices.pop_back();
   result.value = kind_of(type);
   result.default_value = option.get_default_str();
   result.is_repeated = option.get_items_expected_max() > 1;

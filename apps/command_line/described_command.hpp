@@ -14,6 +14,7 @@ struct DescribedOption {
   std::vector<std::string> names;    ///< "-o", "--output"; of an argument its name alone: "CROWN"
   std::string value;                 ///< what it takes: "TEXT", "NUMBER"; empty for a flag
   std::vector<std::string> choices;  ///< the words that it takes; empty: any
+  bool takes_other_words = false;    ///< beside the choices, such as a number
   std::string text;                  ///< what it is for
   std::string default_value;         ///< empty: none
   bool is_required = false;

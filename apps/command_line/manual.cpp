@@ -36,6 +36,7 @@ std::string value_text(const DescribedOption& option) {
     value = italic(option.value);
   } else {
     for (const std::string& choice : option.choices) value += (value.empty() ? "" : "|") + bold(choice);
+    if (option.takes_other_words) value += "|" + italic(option.value);
   }
   if (option.is_repeated) value += " ...";
   return option.is_value_optional ? " [" + value + "]" : " " + value;

@@ -58,6 +58,7 @@ void write_manual(const CLI::App& app, const Program& named, const ManualCommand
     fmt::print("{}", manual_page(**asked, program, options));
     return;
   }
+  require_folder_name(command.folder, "pages");
   if (!command.words.empty()) throw UsageError("A folder takes the pages of all commands: name none, or no folder.");
   std::vector<OutputFile> pages;
   std::vector<std::filesystem::path> names;

@@ -36,6 +36,12 @@ void require_no_mesh_ending(const fs::path& output, const std::string& what) {
     throw UsageError(fmt::format("{}: {} must not have the name of a mesh.", output.string(), what));
 }
 
+void require_folder_name(const fs::path& folder, const std::string& what) {
+  if (folder != "-") return;
+  throw UsageError(fmt::format(
+      "Several {} cannot go to standard output: give a folder (-o FOLDER), ./- where that is its name.", what));
+}
+
 void require_new(const std::vector<fs::path>& outputs, bool overwrite) {
   if (overwrite) return;
   std::error_code ignored;

@@ -23,6 +23,9 @@ void require_ending(const std::filesystem::path& output, const std::vector<std::
 /// A report or a table under the name of a mesh is a slip of the pen. Throws UsageError.
 void require_no_mesh_ending(const std::filesystem::path& output, const std::string& what);
 
+/// Several files do not go to standard output. `what`: "registered teeth". Throws UsageError for the name "-".
+void require_folder_name(const std::filesystem::path& folder, const std::string& what);
+
 /// Names that the program made up itself never replace a file, unless the user said so (--overwrite). Throws
 /// UsageError.
 void require_new(const std::vector<std::filesystem::path>& outputs, bool overwrite);

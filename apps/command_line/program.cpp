@@ -21,6 +21,7 @@
 #include <exception>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -33,15 +34,27 @@ int report(const Program& program, ErrorCode code, const std::string& sentence) 
   return static_cast<int>(code);
 }
 
-int report_unprintable(const Program& program) {
+/// `number`: of the system's error; 0 where it came long before and is no longer known.
+int report_unprintable(const Program& program, int number) {
   return report(program, ErrorCode::unwritable,
-                fmt::format("standard output cannot be written: {}", std::strerror(errno)));
+                fmt::format("standard output cannot be written: {}",
+                            number == 0 ? "a part of it did not get through" : std::strerror(number)));
 }
 
 /// What is still in the buffer may meet a full disk.
 int finish_printing(const Program& program, int code) {
   errno = 0;
-  return std::fflush(stdout) != 0 || std::ferror(stdout) != 0 ? report_unprintable(program) : code;
+  const bool has_failed = std::fflush(stdout) != 0;
+  const int number = errno;
+  return has_failed || std::ferror(stdout) != 0 ? report_unprintable(program, has_failed ? number : 0) : code;
+}
+
+/// Help, or the version.
+int print_help(const Program& program, const CLI::App& app, const CLI::Success& help) {
+  std::ostringstream text;
+  const int code = app.exit(help, text, text);
+  fmt::print("{}", text.str());
+  return finish_printing(program, code);
 }
 
 void describe(const Program& program, CLI::App& app) {
@@ -120,7 +133,7 @@ int run_program(const Program& program, int argc, char** argv) {
       say_cost(app, watch.seconds());
       return finish_printing(program, done.get_exit_code());
     } catch (const CLI::Success& help) {
-      return finish_printing(program, app.exit(help));
+      return print_help(program, app, help);
     } catch (const CLI::ParseError& error) {
       return report(program, ErrorCode::wrong_usage, say_misunderstood(app, error));
     }
@@ -129,7 +142,9 @@ int run_program(const Program& program, int argc, char** argv) {
   } catch (const Error& error) {
     return report(program, error.code(), error_line(error));
   } catch (const std::exception& error) {
-    if (std::ferror(stdout) != 0) return report_unprintable(program);
+    const auto* unprinted = dynamic_cast<const std::system_error*>(&error);
+    if (std::ferror(stdout) != 0)
+      return report_unprintable(program, unprinted == nullptr ? 0 : unprinted->code().value());
     return report(program, ErrorCode::internal, fault_line(error));
   }
 }

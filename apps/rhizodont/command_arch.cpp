@@ -1,10 +1,12 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "arch/arch_options.hpp"
 #include "command_line/number_options.hpp"
 #include "command_line/output_checks.hpp"
 #include "command_line/output_options.hpp"
 #include "command_line/progress_line.hpp"
 #include "commands.hpp"
+#include "dropped_text.hpp"
 #include "models_option.hpp"
 #include "report/arch_files.hpp"
 #include "report/html_report.hpp"
@@ -68,6 +70,8 @@ void print_summary(const CompletedArch& arch) {
       fmt::print(" ({:.1f} to {:.1f} with 80 % probability)", r.root.interval->length_low_mm,
                  r.root.interval->length_high_mm);
     fmt::print(", {} of {} crown triangles kept\n", r.crown.kept_triangles, r.crown.triangles);
+    if (const std::string dropped = dropped_text(r.crown.dropped_vertices); !dropped.empty())
+      fmt::print("  {}\n", dropped);
     for (const std::string& warning : all_warnings(r)) fmt::print("  note: {}\n", warning);
   }
 }
@@ -96,6 +100,7 @@ void require_page(const std::string& report) {
 
 void run(ArchCommand& command) {
   require_page(command.report);
+  require_folder_name(command.output, "teeth");
   for (const std::string& length : command.lengths) add_length(length, command.options.root_lengths);
   const std::filesystem::path models = models_folder(command.models, command.said);
   std::vector<std::filesystem::path> inputs = files_of_scan(command.scan, command.source);
@@ -114,6 +119,8 @@ void run(ArchCommand& command) {
     };
   }
   inputs.insert(inputs.end(), weights.begin(), weights.end());
+  const CompletionModels loaded = CompletionModels::load(models);
+  require_models_of_arch(loaded, command.options);  // before minutes of search for teeth
   ScanInput input = read_scan(command.scan, command.source, command.options.tooth.millimetres_per_unit);
   std::vector<std::filesystem::path> names = arch_file_names(input.scan, command.files, command.output);
   if (!command.report.empty()) names.emplace_back(command.report);
@@ -127,7 +134,7 @@ void run(ArchCommand& command) {
   if (command.name_in_report && !input.sha256.empty())
     command.files.scan_name = std::filesystem::path(command.scan).filename().string();
   ProgressLine line(command.said);
-  CompletedArch arch = complete_arch(input.scan, CompletionModels::load(models), command.options, progress_on(line));
+  CompletedArch arch = complete_arch(input.scan, loaded, command.options, progress_on(line));
   line.clear();
   refuse_what_no_file_holds(arch, command.files);
   std::vector<OutputFile> files = arch_files(input, arch, command.options, command.files, command.output);
@@ -154,8 +161,9 @@ void add_label_options(CLI::App& arch, const std::shared_ptr<ArchCommand>& comma
   arch.add_option("--palette", command->source.palette,
                   "What the scan's colours stand for: lines 'RRGGBB number', or JSON");
   arch.add_option_function<std::string>(
-      "--labels-are", [command](const std::string& word) { command->source.numbers = read_label_numbers(word); },
-      "What the numbers are: fdi, universal, arch14, arch16; decided by themselves if not given");
+          "--labels-are", [command](const std::string& word) { command->source.numbers = read_label_numbers(word); },
+          "What the numbers are; decided by themselves if not given")
+      ->check(CLI::IsMember({"fdi", "universal", "arch14", "arch16"}));
   arch.add_option_function<std::string>(
           "--jaw",
           [command](const std::string& word) { command->source.jaw = word == "upper" ? Jaw::upper : Jaw::lower; },

@@ -108,6 +108,7 @@ nlohmann::ordered_json figures_of(const BatchShard& shard, const BatchResult& re
 void run(BatchCommand& command) {
   if (command.manifest.empty()) throw UsageError("A batch needs a manifest: rhizodont batch MANIFEST.csv -o FOLDER.");
   if (command.output.empty()) throw UsageError("A batch needs a folder for its results (-o FOLDER).");
+  require_folder_name(command.output, "results");
   BatchOptions& options = command.options;
   options.shard = command.shard.empty() ? shard_of_environment(environment_variable) : read_shard(command.shard);
   options.cases.crown.skirt = skirt_threshold(command.skirt);
@@ -202,6 +203,7 @@ void add_completion_options(CLI::App& batch, const std::shared_ptr<BatchCommand>
   batch
       .add_option("--skirt", command->skirt,
                   "Gum and webs around single crowns: keep, auto (drop), or drop below this CONFIDENCE of being tooth")
+      ->type_name("TEXT:{keep,auto,...}")
       ->capture_default_str();
   batch.add_flag("--repair", cases.crown.repair, "Mend defective single crowns first; arches always are");
 }

@@ -87,6 +87,15 @@ void print_table(const CheckReport& report) {
   for (const std::string& failure : report.failures) fmt::print("- {}\n", failure);
 }
 
+/// Without the report nothing is known of what was mended or taken for no part of the tooth.
+void tell_of_report(const CheckCommand& command, const CheckReport& report) {
+  if (!command.report.empty() || report.crown.holds || report.crown.kept_triangles == 0) return;
+  command.said.tell(
+      "If 'complete' dropped specks, cap or skirt, or repaired the crown, say so with its report: --report FILE. What "
+      "it "
+      "lists is not demanded.");
+}
+
 /// Read once: a pipe gives its bytes only once.
 MeshFile read_crown(const std::string& path, std::string& sha256) {
   try {
@@ -114,6 +123,7 @@ void run(const CheckCommand& command) {
   }
   const CheckReport report = check(crown.mesh, tooth.mesh, options);
   if (command.said.wants_words()) print_table(report);
+  tell_of_report(command, report);
   write_output_files(command.said.print_or_file(report));
   if (!report.holds()) exit_with(static_cast<int>(ErrorCode::no_result));
 }
@@ -134,7 +144,7 @@ void add_check_command(CLI::App& app) {
           "skirt")
       ->capture_default_str();
   check_app->add_option("--report", command->report,
-                        "Report of 'complete': what it lists as cap, skirt or repaired is not demanded");
+                        "Report of 'complete': what it lists as cap, skirt, speck or repaired is not demanded");
   command->said.add_with_figures_to(*check_app);
   check_app->callback([command] { run(*command); });
 }

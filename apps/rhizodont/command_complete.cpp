@@ -7,6 +7,7 @@
 #include "command_line/words.hpp"
 #include "commands.hpp"
 #include "complete_jobs.hpp"
+#include "dropped_text.hpp"
 #include "mesh_detail.hpp"
 #include "models_option.hpp"
 #include "report/html_report.hpp"
@@ -70,9 +71,8 @@ void print_summary(std::FILE* out, const CompletedTooth& tooth, const std::strin
     fmt::print(out, "  like a {}: {:.0f} %, {:.2f} mm from its mean crown; next {} ({:.0f} %) and {} ({:.0f} %)\n",
                likeness->said.fdi, 100 * likeness->said.probability, likeness->said.distance_mm, likeness->next[0].fdi,
                100 * likeness->next[0].probability, likeness->next[1].fdi, 100 * likeness->next[1].probability);
-  const auto skirt = std::count_if(r.crown.dropped_vertices.begin(), r.crown.dropped_vertices.end(),
-                                   [](const DroppedCrownVertex& d) { return d.reason == DropReason::skirt; });
-  if (skirt > 0) fmt::print(out, "  {} vertices dropped as skirt\n", skirt);
+  if (const std::string dropped = dropped_text(r.crown.dropped_vertices); !dropped.empty())
+    fmt::print(out, "  {}\n", dropped);
   for (const RepairStep& step : r.repairs)
     fmt::print(out, "  repaired: {} ({} vertices, {} triangles)\n", action_text(step), step.vertices.size(),
                step.triangles.size());
@@ -101,7 +101,8 @@ class Completion {
       throw UsageError("Figures (--json) would be mixed with what goes to standard output: give them a file.");
   }
 
-  /// Completes them all; one that fails does not stop the others. The largest of their exit codes.
+  /// Completes them all; one that fails does not stop the others. The exit code of all together: the largest of theirs,
+  /// but where some have teeth and others none.
   int run() {
     models_ = CompletionModels::load(models_folder_);  // not in a crown's name: no report is to say it was refused
     if (has_pages_) model_hashes_ = hashes_of(model_files(models_folder_));  // once for the pages of all crowns
@@ -116,7 +117,10 @@ class Completion {
     command_.said.print_figures(figures());
     if (jobs_.size() > 1 && command_.said.wants_words())
       fmt::print(words_, "{} of {} crowns completed\n", completed, jobs_.size());
-    return worst;
+    const bool is_partial = completed > 0 && completed < jobs_.size() &&
+                            worst != static_cast<int>(ErrorCode::internal) &&
+                            worst != static_cast<int>(ErrorCode::unwritable);
+    return is_partial ? static_cast<int>(ErrorCode::partial) : worst;
   }
 
  private:
@@ -148,6 +152,7 @@ class Completion {
       add_figures(job, code, Json::array(), is_refusal ? Json::parse(report) : Json(nullptr));
       return is_refusal ? std::max(code, write_refusal(report, job)) : code;
     } catch (const std::exception& fault) {  // the other crowns may do
+      if (std::ferror(stdout) != 0) throw;   // but nothing more can be said
       say(fault_line(fault), job, !attempt.is_read);
       add_figures(job, static_cast<int>(ErrorCode::internal), Json::array(), nullptr);
       return static_cast<int>(ErrorCode::internal);
@@ -351,6 +356,7 @@ void add_complete_command(CLI::App& app) {
   complete
       ->add_option("--skirt", command->skirt,
                    "Gum and webs around the crown: keep, auto (drop), or drop below this CONFIDENCE of being tooth")
+      ->type_name("TEXT:{keep,auto,...}")
       ->capture_default_str();
   complete->add_flag("--repair", command->options.repair,
                      "Mend a defective crown first: merges, drops and turns, each listed in the report");

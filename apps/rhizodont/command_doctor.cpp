@@ -41,6 +41,12 @@ void print_self_test(const doctor::SelfTest& test) {
   print_table_row("crown triangles kept", fmt::format("{} of {}", test.kept_triangles, test.crown_triangles));
 }
 
+std::string verdict(const doctor::Examination& found) {
+  if (!found.faults.empty()) return coloured(stdout, TextColour::red, "It does not work.");
+  if (found.warnings.empty()) return coloured(stdout, TextColour::green, "All is well.");
+  return coloured(stdout, TextColour::yellow, "It works, but for what the warnings say.");
+}
+
 void print_table(const doctor::Examination& found, bool is_verbose) {
   fmt::print("rhizodont {}{}\n", found.version, found.has_pages ? "" : ", without its pages");
   for (const auto& [name, version] : found.libraries) print_table_row(name.c_str(), version);
@@ -60,8 +66,7 @@ void print_table(const doctor::Examination& found, bool is_verbose) {
     fmt::print("{} {}\n", coloured(stdout, TextColour::yellow, "warning:"), warning);
   for (const std::string& fault : found.faults)
     fmt::print("{} {}\n", coloured(stdout, TextColour::red, "fault:"), fault);
-  fmt::print("{}\n", found.faults.empty() ? coloured(stdout, TextColour::green, "All is well.")
-                                          : coloured(stdout, TextColour::red, "It does not work."));
+  fmt::print("{}\n", verdict(found));
 }
 
 void run(const DoctorCommand& command) {

@@ -42,6 +42,8 @@ void say_refusal(const std::string& file, const std::string& why) {
 }
 
 void run(const RegisterCommand& command) {
+  require_folder_name(command.output, "registered teeth");
+  if (!(command.options.largest_mean_mm > 0)) throw UsageError("--largest-distance takes a distance above 0 mm.");
   ToothFileOptions naming;
   naming.numbers = read_label_numbers(command.numbers);
   if (!command.jaw.empty()) naming.jaw = command.jaw == "upper" ? Jaw::upper : Jaw::lower;
@@ -61,6 +63,7 @@ void run(const RegisterCommand& command) {
     try {
       const RegisteredTooth tooth =
           register_tooth(load_mesh(files[i].path).mesh, files[i].fdi, templates, command.options);
+      require_growable(tooth, files[i].fdi, templates);
       const auto type = static_cast<std::size_t>(tooth_type_of_fdi(files[i].fdi));
       write_output_files(
           {{outputs[i], mesh_file_bytes(outputs[i], registered_file(tooth, templates[type], files[i]))}});
@@ -96,8 +99,8 @@ void add_register_command(CLI::App& app) {
   register_app->add_option("--data", command->data, "Folder with templates/")->required();
   register_app->add_option("-o,--output", command->output, "Folder for registered teeth, tooth_FDI_NAME.ply")
       ->required();
-  register_app
-      ->add_option("--labels-are", command->numbers, "Numbers in the files' names: fdi, universal, arch14, arch16")
+  register_app->add_option("--labels-are", command->numbers, "What the numbers in the files' names are")
+      ->check(CLI::IsMember({"fdi", "universal", "arch14", "arch16"}))
       ->capture_default_str();
   register_app->add_option("--jaw", command->jaw, "upper or lower, for numbers along the arch")
       ->check(CLI::IsMember({"upper", "lower"}));

@@ -78,6 +78,7 @@ void add_render_command(CLI::App& app) {
   render_app
       ->add_option("--views", command->options.views,
                    "Of front, back, left, right, top, bottom, oblique, with commas between")
+      ->type_name("TEXT:{front,back,left,right,top,bottom,oblique}")
       ->delimiter(',')
       ->capture_default_str();
   render_app
@@ -93,6 +94,7 @@ void add_render_command(CLI::App& app) {
       ->add_option("--color-by", command->colour_by,
                    "source, fdi (numbers of teeth), another attribute of a PLY file, none, or auto: source or fdi if "
                    "there is one")
+      ->type_name("TEXT:{auto,source,fdi,none,...}")
       ->capture_default_str();
   command->said.add_to(*render_app);
   render_app->callback([command] { run(*command); });

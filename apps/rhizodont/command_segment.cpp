@@ -106,9 +106,11 @@ void add_segment_command(CLI::App& app) {
                    "Universal_ID)")
       ->required();
   command->teeth.add_to(*segment);
-  segment->add_option_function<std::string>(
-      "--numbers", [command](const std::string& word) { command->numbers = read_label_numbers(word); },
-      "Numbers in a .vtp: fdi, universal, arch14, arch16");
+  segment
+      ->add_option_function<std::string>(
+          "--numbers", [command](const std::string& word) { command->numbers = read_label_numbers(word); },
+          "What the numbers in a .vtp are to be; fdi if not given")
+      ->check(CLI::IsMember({"fdi", "universal", "arch14", "arch16"}));
   add_unit_option(*segment, command->options.millimetres_per_unit,
                   "Unit of the scan's file: mm, cm, m, um, in, also in full and in capitals");
   segment->add_flag("--overwrite", command->overwrite, "Replace a file that is there already");

@@ -7,6 +7,7 @@
 #include "families/mean_arch.hpp"
 #include "families/mean_teeth.hpp"
 #include "families/person.hpp"
+#include "families/registered_templates.hpp"
 #include "families/synthetic_files.hpp"
 #include "families/tooth_family.hpp"
 #include "pictures/render.hpp"
@@ -26,6 +27,8 @@
 
 namespace rhizodont::command_line {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 struct SynthCommand {
   std::string data;
@@ -111,12 +114,14 @@ void require_safe_places(const SynthCommand& command) {
     require_no_mesh_ending(command.arch, "a model of the arch (--arch-model)");
     outputs.emplace_back(command.arch);
   }
+  for (const std::filesystem::path& file : command.said.outputs()) outputs.push_back(file);
   const std::vector<std::filesystem::path> inputs = files_below(command.data);
   require_separate_files(inputs, made_up);
   require_safe_outputs(inputs, outputs);
 }
 
-void write_tooth(const SynthCommand& command, const ToothFamilies& families, int fdi, std::uint64_t seed,
+/// Writes it and tells of it; returns its figures.
+Json write_tooth(const SynthCommand& command, const ToothFamilies& families, int fdi, std::uint64_t seed,
                  Drawing& drawing) {
   const bool right_side = is_right_side(fdi);
   const SyntheticTooth tooth = command.person ? generate_tooth_of_person(families, fdi, draw_person(seed))
@@ -125,10 +130,17 @@ void write_tooth(const SynthCommand& command, const ToothFamilies& families, int
   const MeshFile file = synthetic_tooth_file(tooth, cropped.line, right_side);
   const auto tooth_name = file_name(command, "tooth", fdi, seed);
   std::vector<OutputFile> files{{tooth_name, mesh_file_bytes(tooth_name, file)}};
+  Json figures{{"tooth", tooth_name.string()},
+               {"fdi", fdi},
+               {"seed", seed},
+               {"root_length_mm", tooth.root_length},
+               {"crown_height_mm", tooth.crown_height},
+               {"roots", tooth.apices.size()}};
   if (command.crowns) {
     const MeshFile crown = synthetic_crown_file(tooth, cropped, right_side, {command.edge_mm, command.noise_mm, seed});
     const auto crown_name = file_name(command, "crown", fdi, seed);
     files.push_back({crown_name, mesh_file_bytes(crown_name, crown)});
+    figures["crown"] = crown_name.string();
     drawing.meshes.push_back(crown.mesh);
     drawing.colours.push_back({plain_colour()});
   }
@@ -138,14 +150,18 @@ void write_tooth(const SynthCommand& command, const ToothFamilies& families, int
                                 tooth.apices.size() == 1 ? "" : "s"));
   drawing.meshes.push_back(file.mesh);
   drawing.colours.push_back(colours_by_source(file.mesh, file.vertex_attributes.at(source_attribute).values));
+  return figures;
 }
 
-void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
+/// Returns the figures of all.
+Json write_teeth(const SynthCommand& command, const ToothFamilies& families) {
   Drawing drawing;
+  Json teeth = Json::array();
   for (const int fdi : command.fdi)
     for (int i = 0; i < command.count; ++i)
-      write_tooth(command, families, fdi, command.seed + static_cast<std::uint64_t>(i), drawing);
-  if (command.sheet.empty()) return;
+      teeth.push_back(write_tooth(command, families, fdi, command.seed + static_cast<std::uint64_t>(i), drawing));
+  Json figures{{"teeth", std::move(teeth)}};
+  if (command.sheet.empty()) return figures;
   RenderOptions options;
   options.width = 240;
   options.height = 320;
@@ -154,6 +170,7 @@ void write_teeth(const SynthCommand& command, const ToothFamilies& families) {
   for (std::size_t i = 0; i < drawing.meshes.size(); ++i)
     items.push_back({&drawing.meshes[i], drawing.colours[i], Eigen::Vector3d::UnitZ().eval()});
   write_output_files({{command.sheet, encode_png(render(items, options))}});
+  return figures;
 }
 
 /// `count` teeth of every type (or of one), a row for each type, from the cheek's side, from the side and from above.
@@ -183,8 +200,9 @@ void write_contact_sheet(const SynthCommand& command, const ToothFamilies& famil
   command.said.tell(command.sheet);
 }
 
-/// Crowns as they are cut from scans, skirts labelled.
-void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
+/// Crowns as they are cut from scans, skirts labelled. Returns the figures of all.
+Json write_skirts(const SynthCommand& command, const ToothFamilies& families) {
+  Json crowns = Json::array();
   for (const int fdi : command.fdi) {
     for (int i = 0; i < command.count; ++i) {
       const std::uint64_t seed = command.seed + static_cast<std::uint64_t>(i);
@@ -194,10 +212,16 @@ void write_skirts(const SynthCommand& command, const ToothFamilies& families) {
       const SkirtSample sample = make_skirt_sample(families, seed, options);
       const auto name = file_name(command, "skirt", fdi, seed);
       save_mesh(name, skirt_sample_file(sample));
-      command.said.tell(fmt::format("{}: {} vertices, {} skirt", name.string(), sample.is_tooth.size(),
-                                    std::count(sample.is_tooth.begin(), sample.is_tooth.end(), 0)));
+      const auto skirt = std::count(sample.is_tooth.begin(), sample.is_tooth.end(), 0);
+      command.said.tell(fmt::format("{}: {} vertices, {} skirt", name.string(), sample.is_tooth.size(), skirt));
+      crowns.push_back({{"crown", name.string()},
+                        {"fdi", fdi},
+                        {"seed", seed},
+                        {"vertices", sample.is_tooth.size()},
+                        {"skirt", skirt}});
     }
   }
+  return {{"crowns", std::move(crowns)}};
 }
 
 SynthArches arches_of(const SynthCommand& command) {
@@ -229,6 +253,7 @@ SynthCommand with_teeth_of_people(SynthCommand command) {
 }
 
 void run(const SynthCommand& given) {
+  if (!given.output.empty()) require_folder_name(given.output, given.arches ? "arches" : "teeth");
   if (given.arches) return write_arches(arches_of(given));
   const SynthCommand command = with_teeth_of_people(given);
   if (command.output.empty() && command.atlas.empty() && command.arch.empty() && command.sheet.empty())
@@ -240,12 +265,15 @@ void run(const SynthCommand& given) {
   FamilyLoadOptions options;
   options.population = command.population;
   options.registered = command.registered;
-  if (command.edge_mm > 0) options.vertices = 20000;  // finer than the scan to be made
+  if (command.edge_mm > 0) options.vertices = fine_template_vertices;  // finer than the scan to be made
   const ToothFamilies families = load_tooth_families(command.data, options);
   if (!command.atlas.empty()) write_atlas(command, families);
   if (!command.arch.empty()) write_arch(command, families);
-  if (!command.output.empty()) command.skirts ? write_skirts(command, families) : write_teeth(command, families);
+  Json figures{{"teeth", Json::array()}};
+  if (!command.output.empty())
+    figures = command.skirts ? write_skirts(command, families) : write_teeth(command, families);
   if (command.output.empty() && !command.sheet.empty()) write_contact_sheet(command, families);
+  write_output_files(command.said.print_or_file(figures));
 }
 
 }  // namespace
@@ -295,7 +323,7 @@ void add_synth_command(CLI::App& app) {
   synth->add_option("--arch-model", command->arch,
                     "Write where the mean crowns stand in the arch, and how, to this safetensors file");
   synth->add_flag("--overwrite", command->overwrite, "Teeth and crowns of the same names in the folder are replaced");
-  command->said.add_to(*synth);
+  command->said.add_with_figures_to(*synth);
   synth->callback([command] { run(*command); });
 }
 

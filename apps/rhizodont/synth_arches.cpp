@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "synth_arches.hpp"
 
+#include "command_line/output_checks.hpp"
 #include "io/write_labels.hpp"
 #include "pictures/render.hpp"
 #include "rhizodont/io.hpp"
@@ -80,7 +81,9 @@ void write_sheet(const std::filesystem::path& path, const std::vector<GeneratedA
 
 void write_arches(const SynthArches& command) {
   const ArchFamily family = load_arch_family(command.data);
+  require_safe_outputs({}, command.said.outputs());
   std::vector<GeneratedArch> for_sheet;
+  nlohmann::ordered_json figures = nlohmann::ordered_json::array();
   for (int i = 0; i < command.count; ++i) {
     const std::uint64_t seed = command.seed + static_cast<std::uint64_t>(i);
     GeneratedArch arch = sample_arch(family, seed, command.options);
@@ -93,12 +96,18 @@ void write_arches(const SynthArches& command) {
       write_output_files({{mesh_name, mesh_file_bytes(mesh_name, file)},
                           {command.output / (name + ".json"), teeth3ds_json(arch.fdi, arch.jaw, file)},
                           {command.output / (name + "_drawn.json"), drawn_json(arch, seed)}});
+      figures.push_back({{"scan", mesh_name.string()},
+                         {"seed", seed},
+                         {"jaw", jaw_name(arch.jaw)},
+                         {"teeth", arch.teeth.size()},
+                         {"triangles", arch.scan.triangles.size()}});
       command.said.tell(
           fmt::format("{}: {} teeth, {} triangles", mesh_name.string(), arch.teeth.size(), arch.scan.triangles.size()));
     }
     if (!command.sheet.empty()) for_sheet.push_back(std::move(arch));
   }
   if (!command.sheet.empty()) write_sheet(command.sheet, for_sheet, command.said);
+  write_output_files(command.said.print_or_file({{"arches", figures}}));
 }
 
 }  // namespace rhizodont::command_line

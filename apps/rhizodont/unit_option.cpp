@@ -13,6 +13,7 @@ void add_unit_option(CLI::App& app, double& millimetres_per_unit, const std::str
            millimetres_per_unit = rhizodont::millimetres_per_unit(name);
          },
          description)
+      ->type_name("TEXT:{mm,cm,m,um,in,...}")
       ->default_str("mm");
 }
 

@@ -104,8 +104,9 @@ using ArchProgress = std::function<void(int done, int teeth, int fdi)>;
 /// others. The same for any number of threads.
 /// The same teeth, but for rounding, in any pose of the scan; with its elements in another order the very same.
 /// @param progress  never called by two threads at once; what it throws stops the work and comes through
-/// Throws InputError for a scan without teeth, with numbers of no tooth or of another size than an arch, UsageError for
-/// options out of range, for lengths of teeth that are not there, and where the models' folder lacks what is needed.
+/// Throws InputError for a scan without teeth, with numbers of no tooth or of another size than an arch, and where the
+/// models' folder lacks what is needed; UsageError for options out of range and for lengths of teeth that are not
+/// there.
 RHIZODONT_EXPORT CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& models,
                                              const ArchOptions& options = {}, const ArchProgress& progress = {});
 

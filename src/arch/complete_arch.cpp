@@ -452,9 +452,7 @@ CompletedArch complete(const LabelledScan& scan, const CompletionModels& models,
                        const ArchProgress& progress, ArchMemory* memory) {
   require_options_in_range(options);
   const CompletionModels::Content& content = *content_of(models);
-  if (options.tooth.skirt && !content.skirt)
-    throw UsageError("The models' folder has no weights to find a skirt with (skirt.safetensors).");
-  if (!content.arch) throw UsageError("The models' folder has no model of the arch (arch.safetensors).");
+  require_models_of_arch(models, options);
   return with_threads(options.tooth.threads, [&] {
     require_numbers_of_teeth(scan.fdi);
     CompletedArch arch;
@@ -477,6 +475,14 @@ CompletedArch complete(const LabelledScan& scan, const CompletionModels& models,
 }
 
 }  // namespace
+
+void require_models_of_arch(const CompletionModels& models, const ArchOptions& options) {
+  const CompletionModels::Content& content = *content_of(models);
+  if (options.tooth.skirt && !content.skirt)
+    throw InputError(
+        "The models' folder has no weights to find a skirt with (skirt.safetensors), as arches need them.");
+  if (!content.arch) throw InputError("The models' folder has no model of the arch (arch.safetensors).");
+}
 
 void require_options_in_range(const ArchOptions& options) {
   require_options_in_range(options.tooth);

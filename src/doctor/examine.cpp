@@ -55,6 +55,17 @@ ModelFinding look_at(const std::filesystem::path& folder, const ShippedModel& sh
   return model;
 }
 
+/// What a file of models/ that is not needed is for, as a sentence about its lack.
+std::string_view lack_of(std::string_view name) {
+  if (name == "skirt.safetensors") return "no skirt can be dropped (--skirt auto), and the teeth of scans get no roots";
+  if (name == "likeness.safetensors")
+    return "nobody warns of a crown that is not like the tooth of its number, and one without number is guessed less "
+           "surely";
+  if (name == "arch.safetensors") return "teeth of scans are not found, and get no roots";
+  if (name == "segment.safetensors") return "only scans with labels get roots, and segment is refused";
+  return "what needs it does not work";
+}
+
 void judge_models(Examination& found) {
   for (const ModelFinding& model : found.models) {
     if (!model.is_there && model.is_needed)
@@ -64,7 +75,7 @@ void judge_models(Examination& found) {
           model.name, found.models_folder.string()));
     else if (!model.is_there)
       found.warnings.push_back(
-          fmt::format("There is no {} in {}: what needs it is refused.", model.name, found.models_folder.string()));
+          fmt::format("There is no {} in {}: {}.", model.name, found.models_folder.string(), lack_of(model.name)));
     else if (!model.fault.empty())
       found.faults.push_back(fmt::format("{} cannot be used: {}", model.name, model.fault));
     else if (!model.is_shipped)

@@ -3,6 +3,9 @@
 #include "evaluation/predictors.hpp"
 
 #include "evaluation/template_predictor.hpp"
+#include "rhizodont/error.hpp"
+
+#include <system_error>
 
 namespace rhizodont {
 
@@ -15,6 +18,9 @@ NamedPredictor completing_predictor(const CompletionModels& models, const Comple
 }
 
 NamedPredictor template_predictor(const std::filesystem::path& folder) {
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored))
+    throw InputError("There is no folder " + folder.string() + ", where the templates should be.");
   return {"template", [folder](const TriangleMesh& crown, int fdi) {
             return ToothPrediction{fit_template(crown, load_template_tooth(folder, fdi)), {}, 0, {}};
           }};

@@ -75,16 +75,6 @@ std::array<ToothDimensions, tooth_type_count> read_dimensions(const std::filesys
   return all;
 }
 
-// The files stand in one mouth: y up, z to the front, x to the patient's left. The arch runs through the crowns.
-Eigen::Vector3d crown_centre(const TriangleMesh& mesh, const std::vector<std::uint8_t>& crown) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double count = 0;
-  for (std::size_t v = 0; v < crown.size(); ++v) {
-    if (crown[v] == 1) sum += mesh.vertices[v], count += 1;
-  }
-  return sum / count;
-}
-
 // Neighbours in the arch share forms; a first upper premolar with a single root is grown as a second one, and the other
 // way round. Canines resemble no neighbour.
 std::vector<TemplateLoan> possible_loans(const Population& population) {
@@ -159,6 +149,7 @@ void measure_turns(ToothFamilies& families) {
 void add_registered(ToothFamilies& families, const FamilyLoadOptions& options, const std::vector<int>& wanted,
                     const std::array<TemplateFile, tooth_type_count>& files,
                     const std::array<Eigen::Vector3d, tooth_type_count>& buccal) {
+  require_registered_teeth(options.registered);
   for (const int type : wanted) {
     const auto t = static_cast<std::size_t>(type);
     std::vector<FamilyTemplate> teeth =
@@ -281,9 +272,6 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
   for (std::size_t type = 0; type < families.dimensions.size(); ++type)
     families.dimensions[type].root_length = families.population.teeth[type].root_length_mm;
   const std::array<TemplateFile, tooth_type_count> files = load_template_files(folder);
-  std::vector<Eigen::Vector3d> centres;
-  for (const TemplateFile& file : files) centres.push_back(crown_centre(file.mesh, file.crown));
-
   std::vector<int> wanted = options.types;
   if (wanted.empty()) {
     wanted.resize(tooth_type_count);
@@ -293,11 +281,7 @@ ToothFamilies load_tooth_families(const std::filesystem::path& folder, const Fam
   parallel_tasks(wanted.size(), [&](std::size_t i) {
     const int type = wanted[i];
     const auto t = static_cast<std::size_t>(type);
-    // From the front to the back by position: neighbours in the file need not be neighbours in the mouth.
-    std::vector<Eigen::Vector3d> arch(centres.begin() + (type < 8 ? 0 : 8), centres.begin() + (type < 8 ? 8 : 16));
-    std::sort(arch.begin(), arch.end(), [](const auto& a, const auto& b) { return a.z() - a.x() > b.z() - b.x(); });
-    const auto at = std::find(arch.begin(), arch.end(), centres[t]) - arch.begin();
-    buccal[t] = buccal_direction(arch, static_cast<std::size_t>(at));
+    buccal[t] = buccal_of_template(files, type);
     families.templates[t] = analyse_template(files[t].mesh, files[t].crown, buccal[t], options.vertices);
   });
   for (const TemplateLoan& loan : possible_loans(families.population)) {

@@ -4,6 +4,7 @@
 
 #include "base/lower_case.hpp"
 #include "base/parallel_tasks.hpp"
+#include "families/arch_directions.hpp"
 #include "families/self_crossing.hpp"
 #include "families/tooth_template.hpp"
 #include "mesh/closest_point.hpp"
@@ -79,7 +80,76 @@ Point carried_along(const Point& p, const TriangleMesh& mesh, const ClosestPoint
   return to[v[0]] + share[0] * (to[v[1]] - to[v[0]]) + share[1] * (to[v[2]] - to[v[0]]);
 }
 
+// The files stand in one mouth: y up, z to the front, x to the patient's left. The arch runs through the crowns.
+Eigen::Vector3d crown_centre(const TriangleMesh& mesh, const std::vector<std::uint8_t>& crown) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double count = 0;
+  for (std::size_t v = 0; v < crown.size(); ++v) {
+    if (crown[v] == 1) sum += mesh.vertices[v], count += 1;
+  }
+  return sum / count;
+}
+
+/// A type's template simplified, and how its places become a registered tooth's.
+class Simplification {
+ public:
+  Simplification(const TemplateFile& of_type, std::size_t vertices)
+      : of_type_(of_type), light_(simplified(of_type.mesh, vertices)), surface_(of_type.mesh) {
+    const NearestVertexIndex full(of_type.mesh.vertices);
+    for (const Point& p : light_.vertices)
+      crown_.push_back(of_type.crown[static_cast<std::size_t>(full.nearest(p).index)]);
+  }
+
+  /// `registered`: of the template's vertices. Throws InputError if the surface then runs into itself.
+  FamilyTemplate tooth(const std::vector<Point>& registered, const Eigen::Vector3d& buccal) const {
+    TriangleMesh mesh = light_;
+    for (Point& p : mesh.vertices) p = carried_along(p, of_type_.mesh, surface_, registered);
+    FamilyTemplate tooth = analyse_template(mesh, crown_, buccal, mesh.vertices.size());
+    if (crosses_itself(tooth.mesh))
+      throw InputError("It runs into itself once it is simplified: no tooth can be grown from it.");
+    return tooth;
+  }
+
+ private:
+  const TemplateFile& of_type_;
+  TriangleMesh light_;
+  ClosestPointIndex surface_;
+  std::vector<std::uint8_t> crown_;
+};
+
+std::string registered_beginning(int type) { return fmt::format("tooth_{}_", fdi_of_type(type, false)); }
+
+bool is_registered_name(const std::filesystem::path& file, const std::string& begins) {
+  return file.extension() == ".ply" && file.stem().string().starts_with(begins);
+}
+
 }  // namespace
+
+Eigen::Vector3d buccal_of_template(const std::array<TemplateFile, tooth_type_count>& files, int type) {
+  // From the front to the back by position: neighbours in the file need not be neighbours in the mouth.
+  std::vector<Eigen::Vector3d> arch;
+  const std::size_t first = type < 8 ? 0 : 8;
+  for (std::size_t t = first; t < first + 8; ++t) arch.push_back(crown_centre(files[t].mesh, files[t].crown));
+  const Eigen::Vector3d centre = arch[static_cast<std::size_t>(type) - first];
+  std::sort(arch.begin(), arch.end(), [](const auto& a, const auto& b) { return a.z() - a.x() > b.z() - b.x(); });
+  return buccal_direction(arch, static_cast<std::size_t>(std::find(arch.begin(), arch.end(), centre) - arch.begin()));
+}
+
+void require_growable(const RegisteredTooth& tooth, int fdi,
+                      const std::array<TemplateFile, tooth_type_count>& templates) {
+  const int type = tooth_type_of_fdi(fdi);
+  const Eigen::Vector3d buccal = buccal_of_template(templates, type);
+  for (const std::size_t vertices : {FamilyLoadOptions{}.vertices, fine_template_vertices})
+    Simplification(templates[static_cast<std::size_t>(type)], vertices).tooth(tooth.vertices, buccal);
+}
+
+void require_registered_teeth(const std::filesystem::path& folder) {
+  for (const std::filesystem::path& file : files_of(folder))
+    for (int type = 0; type < tooth_type_count; ++type)
+      if (is_registered_name(file, registered_beginning(type))) return;
+  throw InputError("The folder " + folder.string() +
+                   " has no registered tooth (tooth_FDI_NAME.ply, as rhizodont register writes them).");
+}
 
 std::vector<ToothFile> find_tooth_files(const std::filesystem::path& folder, const ToothFileOptions& options) {
   constexpr std::array<std::string_view, 5> endings{".ply", ".stl", ".obj", ".off", ".vtp"};
@@ -121,28 +191,23 @@ MeshFile registered_file(const RegisteredTooth& tooth, const TemplateFile& of_ty
 std::vector<FamilyTemplate> load_registered_teeth(const std::filesystem::path& folder, int type,
                                                   const TemplateFile& of_type, const Eigen::Vector3d& buccal,
                                                   std::size_t vertices) {
-  const std::string begins = fmt::format("tooth_{}_", fdi_of_type(type, false));
   std::vector<std::filesystem::path> files;
   for (const std::filesystem::path& file : files_of(folder))
-    if (file.extension() == ".ply" && file.stem().string().starts_with(begins)) files.push_back(file);
+    if (is_registered_name(file, registered_beginning(type))) files.push_back(file);
   std::vector<FamilyTemplate> teeth(files.size());
   if (files.empty()) return teeth;
-  const TriangleMesh light = simplified(of_type.mesh, vertices);
-  const ClosestPointIndex surface(of_type.mesh);
-  const NearestVertexIndex full(of_type.mesh.vertices);
-  std::vector<std::uint8_t> crown;
-  for (const Point& p : light.vertices) crown.push_back(of_type.crown[static_cast<std::size_t>(full.nearest(p).index)]);
+  const Simplification simplification(of_type, vertices);
   parallel_tasks(files.size(), [&](std::size_t i) {
     const TriangleMesh registered = load_mesh(files[i]).mesh;
     if (registered.triangles != of_type.mesh.triangles)
       throw InputError(fmt::format(
           "{} was not registered to the template of {} in this folder: register the tooth anew (rhizodont register).",
           files[i].string(), fdi_of_type(type, false)));
-    TriangleMesh mesh = light;
-    for (Point& p : mesh.vertices) p = carried_along(p, of_type.mesh, surface, registered.vertices);
-    teeth[i] = analyse_template(mesh, crown, buccal, mesh.vertices.size());
-    if (crosses_itself(teeth[i].mesh))
-      throw InputError(files[i].string() + " runs into itself once it is simplified: no tooth can be grown from it.");
+    try {
+      teeth[i] = simplification.tooth(registered.vertices, buccal);
+    } catch (const InputError& error) {
+      throw error.reworded(files[i].string() + ": " + error.what());
+    }
   });
   return teeth;
 }

@@ -8,6 +8,8 @@
 #include "rhizodont/io.hpp"
 #include "rhizodont/jaw.hpp"
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -39,6 +41,20 @@ std::string registered_name(const ToothFile& file);
 
 /// A registered tooth as a file: the template's triangles and labels of enamel, the tooth's coordinates.
 MeshFile registered_file(const RegisteredTooth& tooth, const TemplateFile& of_type, const ToothFile& source);
+
+/// Any vector towards the cheek from the template of a type (0..15), in the frame of the files.
+Eigen::Vector3d buccal_of_template(const std::array<TemplateFile, tooth_type_count>& files, int type);
+
+/// So many vertices has a template that crowns as fine as scans are cut from.
+inline constexpr std::size_t fine_template_vertices = 20000;
+
+/// Throws InputError with the reason for a registered tooth that load_registered_teeth would refuse, with as many
+/// vertices as families have or as fine as they can be asked for (fine_template_vertices).
+void require_growable(const RegisteredTooth& tooth, int fdi,
+                      const std::array<TemplateFile, tooth_type_count>& templates);
+
+/// Throws InputError for a folder that cannot be read or has no file named as a registered tooth of any type.
+void require_registered_teeth(const std::filesystem::path& folder);
 
 /// Reads the registered teeth of a type (0..15) from a folder, sorted by name, each with triangles and places of the
 /// simplified template. @param buccal, vertices  as analyse_template. Throws InputError for a folder that cannot be

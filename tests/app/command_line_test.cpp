@@ -96,7 +96,7 @@ TEST_F(CommandLine, SeveralCrownsGoToAFolder) {
   folder.write("bad_11.stl", "nothing");
   const Outcome outcome =
       run(complete("crown_34.ply bad_11.stl crown_36.stl somebody.ply -o teeth/today --report teeth/reports"));
-  EXPECT_EQ(outcome.code, 3) << outcome.error;
+  EXPECT_EQ(outcome.code, 6) << outcome.error;
   EXPECT_NE(outcome.error.find("bad_11.stl"), std::string::npos) << outcome.error;
   EXPECT_NE(outcome.out.find("3 of 4 crowns completed"), std::string::npos) << outcome.out;
   EXPECT_NE(outcome.out.find("Tooth 34, taken from the file's name."), std::string::npos) << outcome.out;
@@ -109,6 +109,10 @@ TEST_F(CommandLine, SeveralCrownsGoToAFolder) {
   EXPECT_EQ(report("teeth/reports/crown_36_tooth.json")["fdi"]["number"], 36);
   EXPECT_TRUE(report("teeth/reports/somebody_tooth.json")["fdi"]["guessed"].get<bool>());
   EXPECT_EQ(run("check crown_36.stl teeth/today/crown_36_tooth.ply").code, 0);
+
+  // A file that is not there is one without a tooth like others; where none has one, the reason's own code stays.
+  EXPECT_EQ(run(complete("crown_34.ply gone_36.stl -o other/")).code, 6);
+  EXPECT_EQ(run(complete("bad_11.stl gone_36.stl -o other/")).code, 3);
 
   expect_error(complete("crown_34.ply crown_36.stl -o teeth/today"), 2, "did not name it yourself");
   expect_error(complete("crown_34.ply crown_36.stl --fdi 34 -o more"), 2, "--fdi is of one crown");
@@ -129,6 +133,9 @@ TEST_F(CommandLine, SlipsInNamesAndWordsAreSaid) {
   expect_error(complete("crown_36.stl -o new"), 2, "for a new folder write new/.");
   expect_error(complete("crown_36.stl -o -  --report -"), 2, "Standard output takes one result only");
   expect_error(complete("crown_36.stl -o tooth.stl --output-format obj"), 2, "ends in .obj");
+  expect_error("arch crown_36.stl -o -", 2, "give a folder (-o FOLDER)");
+  expect_error("synth --data . --type 36 -o -", 2, "give a folder (-o FOLDER)");
+  expect_error("batch cases.csv -o -", 2, "give a folder (-o FOLDER)");
   for (const char* option : {"-o ''", "-o tooth.ply --report ''", "-o tooth.ply --models ''"})
     expect_error(complete(std::string("crown_36.stl ") + option), 2, "an empty one was given");
   expect_error(complete("crown_36.stl -o tooth.ply --unit 10"), 2, "--unit takes a name, not the number 10");
@@ -191,6 +198,11 @@ TEST_F(CommandLine, StandardInputAndOutput) {
   EXPECT_EQ(full.code, 7) << full.error;
   EXPECT_EQ(run("measure crown_36.stl > /dev/full; exit $?; true").code, 7);
   EXPECT_EQ(run("measure crown_36.stl --json > /dev/full; exit $?; true").code, 7);
+  for (const char* command : {"--version", "--help", "complete --help", "manual complete", "shell-completion zsh"}) {
+    const Outcome unprinted = run(command + std::string(" > /dev/full 2> said; exit $?; true"));
+    EXPECT_EQ(unprinted.code, 7) << command;
+    EXPECT_EQ(read_all(at("said")), "rhizodont: standard output cannot be written: No space left on device\n");
+  }
 }
 
 TEST_F(CommandLine, NamesThatAreNotUtf8AndNamesOfPatients) {

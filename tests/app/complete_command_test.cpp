@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <vector>
 
 namespace rhizodont {
@@ -197,13 +198,54 @@ TEST_F(Complete, RepairsOnRequestAndCheckProvesItByTheReport) {
   const Outcome outcome = run("complete bad.ply --fdi 34 --repair -o tooth.ply --report report.json");
   ASSERT_EQ(outcome.code, 0) << outcome.error;
   EXPECT_NE(outcome.out.find("repaired: triangle turned over (0 vertices, 1 triangles)"), std::string::npos);
-  EXPECT_EQ(run("check bad.ply tooth.ply").code, 4) << "a turned triangle is not the crown's";
+  const Outcome plain = run("check bad.ply tooth.ply");
+  EXPECT_EQ(plain.code, 4) << "a turned triangle is not the crown's";
+  EXPECT_NE(plain.out.find("--report FILE"), std::string::npos) << "what helps is said: " << plain.out;
   EXPECT_EQ(run("check bad.ply tooth.ply --report report.json").code, 0);
   auto report = nlohmann::json::parse(std::ifstream(file("report.json")));
   EXPECT_EQ(report["repairs"].size(), 3U);
   expect_error("check '" + sample("crown_34.ply").string() + "' tooth.ply --report report.json", 3, "another crown");
   write_bytes("other.json", "{}");
   expect_error("check bad.ply tooth.ply --report other.json", 3, "not a report");
+}
+
+TEST_F(Complete, SaysWhatItDroppedAndHowCheckHearsOfIt) {
+  const TriangleMesh crown = load_mesh(sample("crown_34.ply")).mesh;
+  // a speck: a triangle of its own on every other neighbour of a vertex with six of them
+  TriangleMesh bad = crown;
+  for (int v = 0; bad.triangles.size() == crown.triangles.size(); ++v) {
+    std::map<int, int> around;  // from neighbour to neighbour
+    for (const Triangle& t : crown.triangles)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (t[i] == v) around[t[(i + 1) % 3]] = t[(i + 2) % 3];
+    std::vector<int> ring;
+    for (int at = around.begin()->first; around.contains(at) && ring.size() < 6; at = around[at]) ring.push_back(at);
+    if (around.size() == 6 && ring.size() == 6) bad.triangles.push_back({ring[0], ring[2], ring[4]});
+  }
+  write("speck.ply", bad);
+  const Outcome done = run("complete speck.ply --fdi 34 --e 2 -o tooth.ply --report report.json");
+  ASSERT_EQ(done.code, 0) << done.error;
+  EXPECT_NE(done.out.find("repaired: "), std::string::npos) << done.out;
+  const Outcome plain = run("check speck.ply tooth.ply");
+  EXPECT_EQ(plain.code, 4) << plain.out;
+  EXPECT_NE(plain.out.find("--report FILE"), std::string::npos) << plain.out;
+  EXPECT_EQ(run("check speck.ply tooth.ply --report report.json").code, 0);
+
+  // a triangle is gone that touched the border with one corner, so that the border passes it twice
+  std::vector<bool> at_border(crown.vertices.size(), false);
+  const EdgeTable edges = edge_table(crown);
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    if (edges.triangle_count(e) == 1)
+      for (const int v : edges.vertices[e]) at_border[static_cast<std::size_t>(v)] = true;
+  TriangleMesh pinched = crown;
+  const auto touches = [&](const Triangle& one) {
+    return std::count_if(one.begin(), one.end(), [&](int v) { return at_border[static_cast<std::size_t>(v)]; }) == 1;
+  };
+  pinched.triangles.erase(std::find_if(pinched.triangles.begin(), pinched.triangles.end(), touches));
+  write("pinched.ply", pinched);
+  const Outcome told = run("complete pinched.ply --fdi 34 --e 2 -o tooth.ply");
+  ASSERT_EQ(told.code, 0) << told.error;
+  EXPECT_NE(told.out.find("1 vertex dropped as pinched border"), std::string::npos) << told.out;
 }
 
 TEST_F(Complete, TheSameBytesForAnyNumberOfThreads) {

@@ -99,6 +99,7 @@ class Manual(unittest.TestCase):
         self.assertRegex(text, r'--format ply\|stl|--format stl\|ply')
         self.assertRegex(text, r'--threads NUMBER\s+At most so many threads; 0 = all. Default: 0\.')
         self.assertRegex(text, r'--cap drop\|keep')
+        self.assertRegex(text, r'--skirt keep\|auto\|TEXT')
         self.assertRegex(text, r'(?s)EXIT STATUS.*3\s+unusable input\.')
         self.assertIn('RHIZODONT_MODELS', text)
         self.assertRegex(text, r'rhizodont complete CROWN \.\.\. -o TEXT \[OPTIONS\]')
@@ -108,6 +109,9 @@ class Manual(unittest.TestCase):
         refused = subprocess.run([PROGRAM, 'manual', '-o', self.pages], capture_output=True, text=True)
         self.assertEqual(refused.returncode, 2)  # pages are there already
         self.assertEqual(subprocess.run([PROGRAM, 'manual', 'nothing'], capture_output=True).returncode, 2)
+        with tempfile.TemporaryDirectory() as name:
+            refused = subprocess.run([PROGRAM, 'manual', '-o', '-'], capture_output=True, text=True, cwd=name)
+            self.assertEqual((refused.returncode, list(pathlib.Path(name).iterdir())), (2, []))
 
 
 class Completion(unittest.TestCase):
@@ -137,6 +141,16 @@ class Completion(unittest.TestCase):
     def test_bash_offers_what_an_option_takes(self):
         if ('complete',) not in PATHS:
             self.skipTest('not the program that completes')
+        numberings = ['fdi', 'universal', 'arch14', 'arch16']
+        for words, choices in [(('complete', '--skirt'), ['keep', 'auto']), (('batch', '--skirt'), ['keep', 'auto']),
+                               (('complete', '--unit'), ['mm', 'cm', 'm', 'um', 'in']), (('arch', '--labels-are'), numberings),
+                               (('register', '--labels-are'), numberings), (('segment', '--numbers'), numberings),
+                               (('render', '--color-by'), ['auto', 'source', 'fdi', 'none']),
+                               (('arch', '--first-label'), ['right', 'left']), (('segment', '--jaw'), ['upper', 'lower'])]:
+            self.assertEqual(self.bash(*words, ''), choices, words)
+        self.assertEqual(self.bash('shell-completion', '')[:3], ['bash', 'zsh', 'fish'])
+        self.assertEqual(self.bash('shell-completion', 'f'), ['fish'])
+        self.assertIn('oblique', self.bash('render', '--views', ''))
         self.assertCountEqual(self.bash('complete', '--ca'), ['--cap', '--candidates'])
         self.assertEqual(self.bash('complete', '--cap', ''), ['drop', 'keep'])
         self.assertEqual(self.bash('complete', '--output-format', 's'), ['stl'])
@@ -164,6 +178,7 @@ class Completion(unittest.TestCase):
             self.assertLessEqual(set(commands_in(said)), fish(' '.join([NAME, *path, ''])), path)
         if ('complete',) in PATHS:
             self.assertEqual(fish(f'{NAME} complete --cap '), {'drop', 'keep'})
+            self.assertEqual(fish(f'{NAME} shell-completion '), {'bash', 'zsh', 'fish'})
 
     @unittest.skipUnless(shutil.which('zsh'), 'zsh is not installed')
     def test_zsh(self):
@@ -202,6 +217,7 @@ zpty -d shell
                 self.assertIn(option, text)
         if ('complete',) in PATHS:
             self.assertIn('--cap keep', zsh(f'{NAME} complete --cap k'))
+            self.assertIn('shell-completion fish', zsh(f'{NAME} shell-completion f'))
 
 
 if __name__ == '__main__':

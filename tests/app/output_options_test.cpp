@@ -66,7 +66,7 @@ TEST_F(OutputOptionsOfCommands, FiguresOfCompleteAreItsReports) {
   EXPECT_EQ(figures["crowns"][0]["teeth"][0]["report"], file("tooth.json"));
 
   const Outcome several = run("complete crown_34.ply flat.obj -o teeth/ --e 2 --json figures.json");
-  EXPECT_EQ(several.code, 3);
+  EXPECT_EQ(several.code, 6);
   EXPECT_NE(several.out.find("1 of 2 crowns completed"), std::string::npos) << several.out;
   const Json both = file("figures.json")["crowns"];
   ASSERT_EQ(both.size(), 2U);
@@ -153,6 +153,25 @@ TEST_F(OutputOptionsOfCommands, QuietPrintsErrorsAlone) {
   EXPECT_EQ(doctor.code, 3);
   EXPECT_EQ(doctor.out, "");
   EXPECT_NE(doctor.error.find("rhizodont: There is no completion.safetensors"), std::string::npos) << doctor.error;
+}
+
+TEST_F(OutputOptionsOfCommands, DoctorDoesNotCallAllWellWhereModelsAreMissing) {
+  EXPECT_NE(run("doctor").out.find("\nAll is well.\n"), std::string::npos);
+  fs::create_directory(folder.path() / "models");
+  for (const char* name : {"completion.safetensors", "atlas.safetensors"})
+    fs::create_symlink(fs::path(RHIZODONT_SOURCE_DIR) / "models" / name, folder.path() / "models" / name);
+  const Outcome doctor = run("doctor --models models");
+  EXPECT_EQ(doctor.code, 0) << doctor.error;
+  EXPECT_EQ(doctor.out.find("All is well"), std::string::npos) << doctor.out;
+  EXPECT_NE(doctor.out.find("It works, but"), std::string::npos) << doctor.out;
+  for (const char* name : {"arch", "likeness", "segment", "skirt"})
+    EXPECT_NE(doctor.out.find(std::string("warning: There is no ") + name + ".safetensors"), std::string::npos) << name;
+  // as it says of them
+  expect_error("complete crown_34.ply -o tooth.ply --models models --skirt auto", 2, "skirt.safetensors");
+  fs::create_directory(folder.path() / "crowns");
+  fs::copy_file(folder.path() / "crown_34.ply", folder.path() / "crowns" / "crown_34.ply");
+  expect_error("arch crowns -o out --models models", 3, "skirt.safetensors");
+  EXPECT_EQ(run("complete crown_34.ply --e 2 -o tooth.ply --models models").code, 0);
 }
 
 TEST_F(OutputOptionsOfCommands, VerboseSaysWhatIsDoneOnStandardError) {

@@ -26,6 +26,8 @@ TEST_F(RegisterProgram, WrongUsageIs2) {
   expect_error("register teeth --data data", 2, "--output");
   expect_error("register teeth --data data -o out --labels-are roman", 2, "roman");
   expect_error("register teeth --data data -o out --jaw left", 2, "--jaw");
+  expect_error("register teeth --data data -o out --largest-distance 0", 2, "--largest-distance takes");
+  expect_error("register teeth --data data -o -", 2, "give a folder (-o FOLDER)");
   write_tooth("tooth_3_anna.ply");
   expect_error("register teeth --data data -o out --labels-are arch16", 2, "--jaw");
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));

@@ -285,11 +285,11 @@ TEST(CompleteArch, ModelsWithoutASkirtNetworkAreSaidAtOnce) {
     std::filesystem::create_symlink(std::filesystem::path(RHIZODONT_SOURCE_DIR) / "models" / name,
                                     folder.path() / name);
   const LabelledScan scan = row_of({{"crown_34.ply", 74}});
-  EXPECT_THROW(complete_arch(scan, CompletionModels::load(folder.path())), UsageError);
+  EXPECT_THROW(complete_arch(scan, CompletionModels::load(folder.path())), InputError);
   std::filesystem::remove(folder.path() / "arch.safetensors");
   ArchOptions options;
   options.tooth.skirt.reset();
-  EXPECT_THROW(complete_arch(scan, CompletionModels::load(folder.path()), options), UsageError);
+  EXPECT_THROW(complete_arch(scan, CompletionModels::load(folder.path()), options), InputError);
 }
 
 TEST(CompleteArch, SizesOfArchesDependOnTheirTeeth) {

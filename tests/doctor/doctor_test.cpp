@@ -77,6 +77,11 @@ TEST(Doctor, AMissingModelIsAFaultOnlyWhereNothingWorksWithoutIt) {
   EXPECT_FALSE(found.code);
   EXPECT_TRUE(speaks_of(found.warnings, "no skirt.safetensors"));
   EXPECT_TRUE(found.self_test && found.self_test->failures.empty());
+  fs::remove(models.path() / "likeness.safetensors");
+  found = examine(models.path());
+  EXPECT_TRUE(found.self_test && found.self_test->failures.empty()) << "a crown is completed without it";
+  EXPECT_TRUE(speaks_of(found.warnings, "no likeness.safetensors"));
+  EXPECT_FALSE(speaks_of(found.warnings, "what needs it")) << "what a model is for is said of each";
   fs::remove(models.path() / "atlas.safetensors");
   found = examine(models.path());
   EXPECT_EQ(found.code, ErrorCode::unusable_input);

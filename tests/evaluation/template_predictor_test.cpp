@@ -3,6 +3,7 @@
 #include "evaluation/template_predictor.hpp"
 
 #include "evaluation/made_teeth.hpp"
+#include "evaluation/predictors.hpp"
 #include "evaluation/root_figures.hpp"
 #include "mesh/geometry.hpp"
 #include "rhizodont/error.hpp"
@@ -129,6 +130,10 @@ TEST(TemplatePredictor, RecoversAMovedTemplateOfARealTooth) {
     const TriangleMesh fitted = fit_template(test::changed(tooth.crown, moved), tooth, to_the_end);
     EXPECT_LT(largest_distance(fitted, test::changed(tooth.mesh, moved)), 0.2) << fdi;
   }
+}
+
+TEST(TemplatePredictor, AFolderThatIsNotThereIsNoticedBeforeTheFirstTooth) {
+  EXPECT_THROW(template_predictor("nowhere"), InputError);
 }
 
 TEST(TemplatePredictor, IsAboutAsGoodAsKnownOnRealTeeth) {

@@ -152,11 +152,24 @@ TEST_F(Registering, BecomesAFurtherTemplate) {
   }
   EXPECT_GT(differ, 0);
 
+  EXPECT_NO_THROW(require_growable(tooth, 46, files));
+  RegisteredTooth folded = tooth;  // its roots pushed up through its crown
+  const double z = area_centroid(files[molar].mesh).y();
+  for (Point& p : folded.vertices)
+    if (p.y() < z) p.y() = z + 1.5 * (z - p.y());
+  EXPECT_THROW(require_growable(folded, 46, files), InputError);
+  save_mesh(registered / "tooth_36_folded.ply", registered_file(folded, files[molar], source));
+  EXPECT_THROW(whole_families(registered), InputError) << "as it says, none can be grown";
+  std::filesystem::remove(registered / "tooth_36_folded.ply");
+
   MeshFile other = registered_file(tooth, files[molar], source);
   other.mesh.triangles.pop_back();
   save_mesh(registered / "tooth_36_other.ply", other);
   EXPECT_THROW(whole_families(registered), InputError) << "registered to another template";
   EXPECT_THROW(whole_families(folder.path() / "nowhere"), InputError);
+  std::filesystem::create_directory(folder.path() / "empty");
+  std::ofstream(folder.path() / "empty" / "tooth_36.ply") << "not registered, for it has no name";
+  EXPECT_THROW(whole_families(folder.path() / "empty"), InputError);
 }
 
 TEST(ToothFiles, AreFoundByTheirNumbers) {
