@@ -51,6 +51,8 @@ def test_errors_are_python_exceptions(cases, models, tmp_path):
         rhizodont.evaluate(tmp_path, models)
     with pytest.raises(rhizodont.UsageError):
         rhizodont.evaluate(cases, models, fdi=34)
+    with pytest.raises(rhizodont.InputError, match="where the templates should be"):
+        rhizodont.evaluate(cases, models, templates=tmp_path / "nowhere")
 
     def stop(*step):
         raise KeyError("enough")
