@@ -28,6 +28,8 @@ struct CompletionCommand {
 };
 
 void train(const CompletionCommand& command) {
+  require_place_for_figures(command.said,
+                            {command.data, command.population, command.registered, command.options.loop.start_from});
   prepare_for_training();
   FamilyLoadOptions population;
   population.population = command.population;
@@ -39,6 +41,9 @@ void train(const CompletionCommand& command) {
       [&](std::uint64_t index) { return make_completion_sample(families, index, command.samples).pair; }, options);
   command.said.tell(fmt::format("{} samples, best root Chamfer distance on held-out teeth {:.3f} mm; checkpoint in {}",
                                 result.samples, result.best_root_chamfer, options.loop.folder.string()));
+  give_figures(command.said, {{"samples", result.samples},
+                              {"best_root_chamfer_mm", result.best_root_chamfer},
+                              {"folder", options.loop.folder.string()}});
 }
 
 /// The network's size; the rest of its shape follows or stays as it is.
@@ -96,7 +101,7 @@ void add_completion_command(CLI::App& app) {
   auto* export_to = train_app->add_option(
       "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");
   train_app->add_flag("--overwrite", command->overwrite, "The export may replace an older model card");
-  command->said.add_to(*train_app);
+  command->said.add_with_figures_to(*train_app);
   train_app->callback([command, data, export_to] {
     if (*export_to) {
       export_weights({command->options.loop.folder, command->export_to, command->overwrite, export_completion,

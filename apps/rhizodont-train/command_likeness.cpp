@@ -47,6 +47,7 @@ void run(const LikenessCommand& command) {
   if (command.teeth < 1 || command.held_out < 1) throw UsageError("The numbers of teeth must be at least 1.");
   require_no_mesh_ending(command.weights, "a weight file");
   require_safe_outputs({}, {command.weights});
+  require_place_for_figures(command.said, {command.data, command.weights});
   require_in_range(command.options);
   if (command.bounds_only && !std::filesystem::exists(command.weights))
     throw InputError(command.weights.string() + " is not there: bounds are found for weights.");
@@ -58,6 +59,10 @@ void run(const LikenessCommand& command) {
   write_safetensors(command.weights, weights);
   command.said.tell(fmt::format("{}: bounds {:.2f}, {:.2f}, {:.2f}", command.weights.string(), bounds.other_tooth,
                                 bounds.unlike, bounds.refused));
+  give_figures(
+      command.said,
+      {{"weights", command.weights.string()},
+       {"bounds", {{"other_tooth", bounds.other_tooth}, {"unlike", bounds.unlike}, {"refused", bounds.refused}}}});
 }
 
 }  // namespace
@@ -78,7 +83,7 @@ void add_likeness_command(CLI::App& app) {
       ->capture_default_str();
   likeness_app->add_flag("--bounds-only", command->bounds_only,
                          "Train nothing: find the bounds of the file's weights anew");
-  command->said.add_to(*likeness_app);
+  command->said.add_with_figures_to(*likeness_app);
   likeness_app->callback([command] { run(*command); });
 }
 

@@ -29,17 +29,22 @@ struct SegmentCommand {
 
 /// Scans are made ahead of the training, by as many processes as there is room for.
 void make_samples(const SegmentCommand& command) {
+  require_place_for_figures(command.said, {command.data});
   const ArchFamily family = load_arch_family(command.data);
+  nlohmann::ordered_json scans = nlohmann::ordered_json::array();
   for (std::uint64_t i = command.first; i < command.first + command.make; ++i) {
     const std::uint64_t seed = i + (command.make_held_out ? first_validation_sample : 0);
     try {
       const LabelledCloud scan = kept_arch_cloud(family, seed, command.cache, command.draw);
       command.said.tell(fmt::format("{}: {} points", seed, scan.cloud.size()));
+      scans.push_back({{"seed", seed}, {"points", scan.cloud.size()}});
     } catch (const NoResultError& error) {
       command.said.tell(fmt::format("{}: {}", seed, error.what()));
+      scans.push_back({{"seed", seed}, {"refusal", error.what()}});
     }
     std::fflush(stdout);
   }
+  give_figures(command.said, {{"scans", scans}});
 }
 
 /// A draw that gives no scan is replaced by the next one that does.
@@ -54,6 +59,7 @@ LabelledCloud any_cloud(const ArchFamily& family, std::uint64_t seed, const std:
 }
 
 void train(SegmentCommand command) {
+  require_place_for_figures(command.said, {command.data});
   prepare_for_training();
   const ArchFamily family = load_arch_family(command.data);
   const CloudProvider provider = [&](std::uint64_t index) { return any_cloud(family, index, command.cache); };
@@ -61,6 +67,9 @@ void train(SegmentCommand command) {
   const ScanTrainingResult result = train_scan(provider, command.options);
   command.said.tell(fmt::format("{} samples; best on held-out scans: {:.4f} of points right; checkpoint in {}",
                                 result.samples, result.best.accuracy, command.options.loop.folder.string()));
+  give_figures(command.said, {{"samples", result.samples},
+                              {"best_accuracy", result.best.accuracy},
+                              {"folder", command.options.loop.folder.string()}});
 }
 
 void add_training_options(CLI::App& app, ScanTrainingOptions& options) {
@@ -96,7 +105,7 @@ void add_segment_command(CLI::App& app) {
   auto* export_to = train_app->add_option(
       "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");
   train_app->add_flag("--overwrite", command->overwrite, "The export may replace an older model card");
-  command->said.add_to(*train_app);
+  command->said.add_with_figures_to(*train_app);
   train_app->callback([command, data, export_to] {
     if (*export_to) {
       if (command->options.loop.folder.empty()) throw UsageError("An export needs the training's folder (--out).");

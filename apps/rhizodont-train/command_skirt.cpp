@@ -35,6 +35,7 @@ void choose_inputs(SurfaceShape& shape, const std::string& inputs) {
 }
 
 void train(SkirtCommand command) {
+  require_place_for_figures(command.said, {command.data, command.measure});
   prepare_for_training();
   const ToothFamilies families = load_tooth_families(command.data);
   const SurfaceProvider provider = [&](std::uint64_t index) {
@@ -49,6 +50,10 @@ void train(SkirtCommand command) {
     command.said.tell(
         fmt::format("{} crowns, {} vertices: accuracy {:.4f}, intersection over union of the skirt {:.4f}", count,
                     f.vertices, f.accuracy, f.intersection));
+    give_figures(command.said, {{"crowns", count},
+                                {"vertices", f.vertices},
+                                {"accuracy", f.accuracy},
+                                {"intersection_over_union", f.intersection}});
     return;
   }
   choose_inputs(command.options.shape, command.inputs);
@@ -57,6 +62,9 @@ void train(SkirtCommand command) {
   command.said.tell(
       fmt::format("{} samples; best on held-out crowns: intersection over union of the skirt {:.4f}; checkpoint in {}",
                   result.samples, result.best.intersection, command.options.loop.folder.string()));
+  give_figures(command.said, {{"samples", result.samples},
+                              {"best_intersection_over_union", result.best.intersection},
+                              {"folder", command.options.loop.folder.string()}});
 }
 
 void add_training_options(CLI::App& app, SurfaceTrainingOptions& options) {
@@ -98,7 +106,7 @@ void add_skirt_command(CLI::App& app) {
   auto* export_to = train_app->add_option(
       "--export", command->export_to, "Train nothing: write the folder's best weights and a model card to this file");
   train_app->add_flag("--overwrite", command->overwrite, "The export may replace an older model card");
-  command->said.add_to(*train_app);
+  command->said.add_with_figures_to(*train_app);
   train_app->callback([command, data, export_to] {
     if (command->measure.empty() && command->options.loop.folder.empty())
       throw UsageError("Training needs a folder for its checkpoints (--out).");

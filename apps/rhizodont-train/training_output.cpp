@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <ctime>
+#include <string>
 
 namespace rhizodont::command_line {
 namespace {
@@ -59,7 +60,23 @@ std::function<void(const TrainingProgress&)> progress_of(const OutputOptions& sa
   };
 }
 
+void require_place_for_figures(const OutputOptions& said, const std::vector<std::filesystem::path>& inputs) {
+  const std::vector<std::filesystem::path> outputs = said.outputs();
+  if (outputs.empty()) return;
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& input : inputs) {
+    if (!input.empty()) files.push_back(input);
+    for (const std::filesystem::path& file : files_below(input)) files.push_back(file);
+  }
+  require_safe_outputs(files, outputs);
+}
+
+void give_figures(const OutputOptions& said, const nlohmann::ordered_json& figures) {
+  write_output_files(said.print_or_file(figures));
+}
+
 void export_weights(const WeightExport& what) {
+  require_place_for_figures(what.said);
   const std::filesystem::path card = require_safe_export(what.weights, what.folder, what.overwrite);
   const TensorFile exported = what.read(
       what.folder,
@@ -69,8 +86,9 @@ void export_weights(const WeightExport& what) {
   const OutputFile weights{what.weights, safetensors_bytes(exported)};
   const WeightFile described{what.weights.filename().string(), weights.bytes.size(), exported.metadata};
   write_output_files({weights, {card, what.card(described)}});
-  what.said.tell(
-      fmt::format("{}: {} samples trained", what.weights.string(), exported.metadata.at("training.samples")));
+  const std::string& samples = exported.metadata.at("training.samples");
+  what.said.tell(fmt::format("{}: {} samples trained", what.weights.string(), samples));
+  give_figures(what.said, {{"weights", what.weights.string()}, {"samples", std::stoll(samples)}});
 }
 
 }  // namespace rhizodont::command_line

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "command_line/output_options.hpp"
 #include "learning/training_options.hpp"
@@ -18,6 +19,13 @@ void prepare_for_training();
 
 /// Prints each report with the time, unless nothing is to be said.
 std::function<void(const TrainingProgress&)> progress_of(const OutputOptions& said);
+
+/// Before the work: that the file of figures, if any, can be written and is none of the inputs: files, and all below
+/// folders; names may be empty. Throws as require_safe_outputs.
+void require_place_for_figures(const OutputOptions& said, const std::vector<std::filesystem::path>& inputs = {});
+
+/// In the end: the figures to where they were asked for (--json).
+void give_figures(const OutputOptions& said, const nlohmann::ordered_json& figures);
 
 /// What differs between the networks whose weights are exported.
 struct WeightExport {

@@ -115,7 +115,9 @@ void require_safe_places(const SynthCommand& command) {
     outputs.emplace_back(command.arch);
   }
   for (const std::filesystem::path& file : command.said.outputs()) outputs.push_back(file);
-  const std::vector<std::filesystem::path> inputs = files_below(command.data);
+  std::vector<std::filesystem::path> inputs = files_below(command.data);
+  for (const std::filesystem::path& file : files_below(command.registered)) inputs.push_back(file);
+  if (!command.population.empty()) inputs.emplace_back(command.population);
   require_separate_files(inputs, made_up);
   require_safe_outputs(inputs, outputs);
 }

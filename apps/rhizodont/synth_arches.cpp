@@ -81,7 +81,7 @@ void write_sheet(const std::filesystem::path& path, const std::vector<GeneratedA
 
 void write_arches(const SynthArches& command) {
   const ArchFamily family = load_arch_family(command.data);
-  require_safe_outputs({}, command.said.outputs());
+  require_safe_outputs(files_below(command.data), command.said.outputs());
   std::vector<GeneratedArch> for_sheet;
   nlohmann::ordered_json figures = nlohmann::ordered_json::array();
   for (int i = 0; i < command.count; ++i) {

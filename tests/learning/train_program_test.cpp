@@ -17,6 +17,11 @@ TEST_F(TrainProgram, SaysWhatItNeeds) {
   expect_error("likeness --data .", 2, "--out");
   expect_error("completions", 2, "did you mean completion?");
   expect_error("completion --data . --out run", 3, "anatomy.csv");
+  std::filesystem::create_directory(folder.path() / "data");
+  folder.write("data/anatomy.csv", "teeth");
+  for (const char* call : {"completion --out run", "skirt --out run", "likeness --out weights", "segment --out run"})
+    expect_error(call + std::string(" --data data --json data/anatomy.csv"), 2, "which is read");
+  EXPECT_EQ(test::read_all(folder.path() / "data/anatomy.csv"), "teeth");
   EXPECT_EQ(run("--version").out.rfind("rhizodont-train ", 0), 0U);
 }
 
