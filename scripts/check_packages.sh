@@ -48,7 +48,9 @@ for file in man/man1/rhizodont.1.gz man/man1/rhizodont-batch-status.1.gz bash-co
   # a minimal Debian leaves out manuals
   [ -s "$root/usr/share/$file" ] || { [ $fresh = yes ] && [[ $file == man/* ]]; } || { echo "the packages lack $file"; exit 1; }
 done
-"${run[@]}" "$place/usr/bin/rhizodont" doctor --quiet
+# by its name alone, as people call it: the models are those of the package
+"${run[@]}" env "PATH=$place/usr/bin:$PATH" rhizodont doctor --json > "$packages/doctor.json"
+grep -q "\"models_folder\": \"$place/usr/share/rhizodont/models\"" "$packages/doctor.json" || { cat "$packages/doctor.json"; exit 1; }
 "${run[@]}" "$place/usr/bin/rhizodont" complete "$crown" --fdi 11 --e 1 -o "$place/tooth.ply" --overwrite
 "${run[@]}" "$place/usr/bin/rhizodont" check "$crown" "$place/tooth.ply" | tail -1
 if [ -n "$python" ]; then

@@ -7,7 +7,10 @@
 
 #include <dlfcn.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <string_view>
+#include <system_error>
 
 namespace rhizodont {
 
@@ -65,7 +68,13 @@ namespace {
 std::filesystem::path installed_models() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&default_models_folder), &info) == 0 || !info.dli_fname) return {};
-  const std::filesystem::path folder = std::filesystem::weakly_canonical(info.dli_fname).parent_path();
+  // Of a program that was found in PATH the linker knows the bare name alone.
+  const bool is_program = std::string_view(info.dli_fname) == program_invocation_name;
+  std::error_code ignored;
+  const std::filesystem::path program =
+      is_program ? std::filesystem::read_symlink("/proc/self/exe", ignored) : std::filesystem::path();
+  const std::filesystem::path code = program.empty() ? std::filesystem::path(info.dli_fname) : program;
+  const std::filesystem::path folder = std::filesystem::weakly_canonical(code, ignored).parent_path();
   for (const char* up : {"..", "../.."}) {
     const std::filesystem::path models = folder / up / "share/rhizodont/models";
     if (std::filesystem::exists(models / completion_file)) return models.lexically_normal();
