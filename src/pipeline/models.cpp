@@ -6,6 +6,7 @@
 #include "rhizodont/error.hpp"
 
 #include <dlfcn.h>
+#include <sys/auxv.h>
 
 #include <cerrno>
 #include <cstdlib>
@@ -70,10 +71,9 @@ std::filesystem::path installed_models() {
   if (dladdr(reinterpret_cast<const void*>(&default_models_folder), &info) == 0 || !info.dli_fname) return {};
   // Of a program that was found in PATH the linker knows the bare name alone.
   const bool is_program = std::string_view(info.dli_fname) == program_invocation_name;
+  const auto* started_as = reinterpret_cast<const char*>(getauxval(AT_EXECFN));  // with its folder, also without /proc
+  const std::filesystem::path code = is_program && started_as != nullptr ? started_as : info.dli_fname;
   std::error_code ignored;
-  const std::filesystem::path program =
-      is_program ? std::filesystem::read_symlink("/proc/self/exe", ignored) : std::filesystem::path();
-  const std::filesystem::path code = program.empty() ? std::filesystem::path(info.dli_fname) : program;
   const std::filesystem::path folder = std::filesystem::weakly_canonical(code, ignored).parent_path();
   for (const char* up : {"..", "../.."}) {
     const std::filesystem::path models = folder / up / "share/rhizodont/models";
