@@ -14,14 +14,18 @@
 
 namespace rhizodont {
 
+OrientedPoints predicted_points(const TriangleMesh& crown, int fdi, const CompletionModels& models) {
+  const auto& content = *content_of(models);
+  const auto type = static_cast<std::size_t>(tooth_type_of_fdi(fdi));
+  const CrownFrame frame = canonical_frame(prepare_crown(crown), fdi, content.atlas.types[type]);
+  return complete_points(crown, fdi, frame, content.network).cloud;
+}
+
 std::vector<BenchPrediction> predict_validation_teeth(const std::filesystem::path& data_folder) {
   const CompletionModels models = CompletionModels::load(default_models_folder());
-  const auto& content = *content_of(models);
   std::vector<BenchPrediction> teeth;
   for (BenchTooth& tooth : load_validation_teeth(data_folder)) {
-    const auto type = static_cast<std::size_t>(tooth_type_of_fdi(tooth.fdi));
-    const CrownFrame frame = canonical_frame(prepare_crown(tooth.crown), tooth.fdi, content.atlas.types[type]);
-    OrientedPoints predicted = complete_points(tooth.crown, tooth.fdi, frame, content.network).cloud;
+    OrientedPoints predicted = predicted_points(tooth.crown, tooth.fdi, models);
     teeth.push_back({tooth.fdi, std::move(tooth.crown), std::move(tooth.tooth), std::move(predicted)});
   }
   return teeth;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "rhizodont/mesh.hpp"
+#include "rhizodont/models.hpp"
 
 namespace rhizodont {
 
@@ -17,6 +18,9 @@ struct BenchPrediction {
   TriangleMesh tooth;        ///< the truth, closed, mm
   OrientedPoints predicted;  ///< mm
 };
+
+/// What the completion network makes of one open crown (mm), in the crown's place. Throws what registration throws.
+OrientedPoints predicted_points(const TriangleMesh& crown, int fdi, const CompletionModels& models);
 
 std::vector<BenchPrediction> predict_validation_teeth(const std::filesystem::path& data_folder);
 

@@ -27,16 +27,30 @@ void read_bytes(std::istream& in, void* to, std::size_t count) {
 
 }  // namespace
 
+void write_samples(const std::filesystem::path& file, const OrientedPoints& samples) {
+  std::ofstream out(file, std::ios::binary);
+  for (std::size_t s = 0; s < samples.points.size(); ++s) {
+    const std::array<double, 6> row{samples.points[s].x(),  samples.points[s].y(),  samples.points[s].z(),
+                                    samples.normals[s].x(), samples.normals[s].y(), samples.normals[s].z()};
+    out.write(reinterpret_cast<const char*>(row.data()), sizeof row);
+  }
+}
+
+OrientedPoints read_samples(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw InputError(file.string() + " cannot be read");
+  OrientedPoints samples;
+  std::array<double, 6> row{};
+  while (in.read(reinterpret_cast<char*>(row.data()), sizeof row)) {
+    samples.points.emplace_back(row[0], row[1], row[2]);
+    samples.normals.emplace_back(row[3], row[4], row[5]);
+  }
+  return samples;
+}
+
 PeerResult open3d_poisson(const OrientedPoints& samples, int depth, int runs, const std::filesystem::path& scratch) {
   const auto points_file = scratch / "samples.bin", mesh_file = scratch / "mesh.bin";
-  {
-    std::ofstream out(points_file, std::ios::binary);
-    for (std::size_t s = 0; s < samples.points.size(); ++s) {
-      const std::array<double, 6> row{samples.points[s].x(),  samples.points[s].y(),  samples.points[s].z(),
-                                      samples.normals[s].x(), samples.normals[s].y(), samples.normals[s].z()};
-      out.write(reinterpret_cast<const char*>(row.data()), sizeof row);
-    }
-  }
+  write_samples(points_file, samples);
   // Its threads wait in a loop by default: with any other work on the machine it then takes ten times as long.
   const std::string command =
       fmt::format("OMP_WAIT_POLICY=PASSIVE /usr/bin/python3 '{}' '{}' {} 2 {} '{}'", RHIZODONT_OPEN3D_SCRIPT,

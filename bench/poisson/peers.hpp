@@ -13,6 +13,10 @@ struct PeerResult {
   double seconds = 0;
 };
 
+/// Rows of six doubles, point and normal; `read_samples` throws InputError for a file that cannot be read.
+void write_samples(const std::filesystem::path& file, const OrientedPoints& samples);
+OrientedPoints read_samples(const std::filesystem::path& file);
+
 /// Open3D's Poisson reconstruction by bench/poisson/open3d_poisson.py, two threads, the fastest of `runs`.
 /// Throws NoResultError if the script fails. Files go to `scratch`.
 PeerResult open3d_poisson(const OrientedPoints& samples, int depth, int runs, const std::filesystem::path& scratch);
