@@ -35,7 +35,7 @@ Written by \`scripts/bench.sh\`; the paper's figures stand beside ours where it 
 |---|---|
 | Processor | $(lscpu | sed -n 's/^Model name: *//p'), $(nproc) cores |
 | Memory | $(free -g | awk '/^Mem/ {print $2}') GB |
-| System | $(. /etc/os-release && echo "$PRETTY_NAME"), $(c++ --version | head -1), $(grep -m1 '^CMAKE_CXX_FLAGS_RELEASE' build/CMakeCache.txt | cut -d= -f2) |
+| System | $(. /etc/os-release && echo "$PRETTY_NAME"), $(c++ --version | head -1), $(sed -n 's/^ *FLAGS = \(-O[^ ]* [^ ]*\).*/\1/p' build/build.ninja | head -1) |
 | Libraries | CGAL $(version libcgal-dev), Eigen $(version libeigen3-dev), oneTBB $(version libtbb-dev), libtorch $(version libtorch-dev), OpenBLAS $(version libopenblas0-openmp), Open3D $(version python3-open3d) |
 | State | $(git rev-parse --short HEAD)$(git diff --quiet HEAD -- src include apps models bench || echo " with changes"), $(date -u +%F) |
 | Load before | $(cut -d' ' -f1-3 /proc/loadavg) |

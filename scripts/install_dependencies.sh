@@ -3,9 +3,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 
 # Installs from Debian 12's packages what this machine lacks of what is needed: for the program alone, or for everything,
-# that is, tests, benchmarks and training too. Beside these there are two groups without which nothing fails: what builds the
-# documents as pages, and what the integrations are tested in.
-# usage: install_dependencies.sh [program|all|documents|integrations]
+# that is, tests, benchmarks and training too. Beside these there are groups without which nothing fails: what builds the
+# documents as pages, and what the integrations are tested in; a last one is what scripts/reproduce.sh compares with.
+# usage: install_dependencies.sh [program|all|documents|integrations|peers]
 set -euo pipefail
 
 packages=(
@@ -24,9 +24,10 @@ case ${1:-all} in
     )
     ;;
   documents) packages=(python3-sphinx furo python3-myst-parser python3-breathe doxygen python3-numpy) ;;
+  peers) packages=(python3-open3d meshlab xvfb xauth libgl1-mesa-dri) ;;
   integrations) packages=(blender python3-vtk9 python3-numpy python3-pytest) ;;
   *)
-    echo "usage: install_dependencies.sh [program|all|documents|integrations]" >&2
+    echo "usage: install_dependencies.sh [program|all|documents|integrations|peers]" >&2
     exit 2
     ;;
 esac

@@ -6,8 +6,11 @@
 #include "families/scanner_mesh.hpp"
 #include "families/tooth_family.hpp"
 #include "guiding/guiding_cloud.hpp"
+#include "intake/take_crown.hpp"
+#include "mesh/adjacency.hpp"
 #include "mesh/closest_point.hpp"
 #include "mesh/quality.hpp"
+#include "pipeline/models.hpp"
 #include "poisson/clouds.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
@@ -16,6 +19,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -29,11 +33,11 @@ ToothVariation variation_of(const std::string& mark) {
       {"worn", {&ToothVariation::wear_share}},
       {"bracket", {&ToothVariation::bracket_share}},
       {"worn-bracket", {&ToothVariation::wear_share, &ToothVariation::bracket_share}},
-      {"decayed", {&ToothVariation::decay_share}},
-      {"deciduous", {&ToothVariation::deciduous_share}}};
+      {"decayed", {&ToothVariation::decay_share}}};
   const auto chosen = shares.find(mark);
   if (chosen == shares.end()) throw UsageError("There is no mark '" + mark + "'.");
   ToothVariation variation;
+  variation.deciduous_share = 0;
   for (const auto& [name, members] : shares)
     for (const auto member : members) variation.*member = 0;
   for (const auto member : chosen->second) variation.*member = 1;
@@ -42,14 +46,21 @@ ToothVariation variation_of(const std::string& mark) {
 
 }  // namespace
 
+TriangleMesh open_crown(const TriangleMesh& crown, int fdi, const CompletionModels& models) {
+  CompleteOptions options;
+  options.fdi = fdi;
+  return take_crown(crown, content_of(models)->atlas, std::nullopt, options).kept.mesh;
+}
+
 OrientedPoints guiding_samples(const TriangleMesh& crown, int fdi, const CompletionModels& models) {
   return assemble_guiding_cloud(prepare_crown(crown), predicted_points(crown, fdi, models)).samples;
 }
 
 MarkedTooth marked_tooth(const std::filesystem::path& data, int fdi, std::uint64_t seed, const std::string& mark) {
+  const int type = tooth_type_of_fdi(fdi);
   FamilyLoadOptions options;
   options.vertices = 12000;
-  const int type = tooth_type_of_fdi(fdi);
+  options.types = {type};
   const SyntheticTooth tooth =
       generate_tooth(load_tooth_families(data, options), type, first_validation_sample + seed, variation_of(mark));
   RandomStream random(seed);
@@ -89,7 +100,8 @@ MeshFile with_quality(const TriangleMesh& mesh) {
 
 MeshFile near_transition(const MeshFile& tooth, const MeshFile& smoothed, double reach_mm) {
   const auto source = smoothed.vertex_attributes.find(source_attribute);
-  if (source == smoothed.vertex_attributes.end()) throw InputError("The tooth does not say where it comes from.");
+  if (source == smoothed.vertex_attributes.end() || !tooth.vertex_attributes.contains(source_attribute))
+    throw InputError("The tooth does not say where it comes from.");
   std::vector<Point> middle;
   for (std::size_t v = 0; v < smoothed.mesh.vertices.size(); ++v)
     if (source->second.values[v] == static_cast<double>(VertexSource::transition))
@@ -99,8 +111,15 @@ MeshFile near_transition(const MeshFile& tooth, const MeshFile& smoothed, double
     const Point& p = tooth.mesh.vertices[static_cast<std::size_t>(v)];
     return std::any_of(middle.begin(), middle.end(), [&](const Point& m) { return (m - p).norm() <= reach_mm; });
   };
-  MeshFile part = tooth;
-  std::erase_if(part.mesh.triangles, [&](const Triangle& t) { return !std::all_of(t.begin(), t.end(), is_near); });
+  std::vector<bool> taken;
+  for (const Triangle& t : tooth.mesh.triangles) taken.push_back(std::all_of(t.begin(), t.end(), is_near));
+  const Submesh kept = submesh(tooth.mesh, taken);
+  MeshFile part;
+  part.mesh = kept.mesh;
+  VertexAttribute& attribute = part.vertex_attributes[source_attribute];
+  attribute.type = AttributeType::uint8;
+  for (const int v : kept.old_vertices)
+    attribute.values.push_back(tooth.vertex_attributes.at(source_attribute).values[static_cast<std::size_t>(v)]);
   return part;
 }
 

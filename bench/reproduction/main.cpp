@@ -36,6 +36,8 @@ void save(const std::string& path, TriangleMesh mesh) {
   save_mesh(path, file);
 }
 
+void open(const Arguments& a) { save(a[2], open_crown(mesh_of(a[0]), std::stoi(a[1]), CompletionModels::load(a[3]))); }
+
 void cloud(const Arguments& a) {
   write_samples(a[2], guiding_samples(mesh_of(a[0]), std::stoi(a[1]), CompletionModels::load(a[3])));
 }
@@ -82,6 +84,7 @@ struct Command {
 
 const std::map<std::string, Command>& commands() {
   static const std::map<std::string, Command> all{
+      {"open", {"CROWN FDI OUT MODELS", open}},
       {"cloud", {"CROWN FDI SAMPLES.bin MODELS", cloud}},
       {"iterative-poisson", {"SAMPLES.bin OUT", iterative}},
       {"open3d-poisson", {"SAMPLES.bin OUT SCRATCH_FOLDER", open3d}},
@@ -91,7 +94,7 @@ const std::map<std::string, Command>& commands() {
       {"cgal-union", {"CROWN FDI TEMPLATES OUT", unite}},
       {"cgal-remesh", {"MESH OUT EDGE_MM", remesh}},
       {"figures", {"CROWN TRUE_TOOTH MESH", figures}},
-      {"marked", {"DATA FDI SEED none|worn|bracket|worn-bracket|decayed|deciduous CROWN_OUT TOOTH_OUT", marked}},
+      {"marked", {"DATA FDI SEED none|worn|bracket|worn-bracket|decayed CROWN_OUT TOOTH_OUT", marked}},
       {"deviation", {"CROWN MESH OUT MOST_MM", deviation}},
       {"quality", {"MESH OUT", quality}},
       {"seam", {"TOOTH SMOOTHED_TOOTH OUT REACH_MM", seam}}};
