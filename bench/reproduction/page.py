@@ -37,7 +37,8 @@ def stamp(root, build, data):
 
     system = re.search(r'PRETTY_NAME="(.*)"', open("/etc/os-release").read()).group(1)
     return {
-        "Commit": said_by(*git, "rev-parse", "--short=10", "HEAD") + (" with changes" if changed else ""),
+        "Commit": said_by(*git, "rev-parse", "--short=10", "HEAD") + (" with changes" if changed else "") +
+                  "; the product as of " + said_by(*git, "log", "-1", "--format=%h", "--", "src", "include", "apps", "models"),
         "Compiler and flags": said_by("c++", "--version").splitlines()[0] + f", {kind}: `{flags}`",
         "Machine": f"{processor.group(1) if processor else 'unknown'}, {os.cpu_count()} cores, {memory:.0f} GB",
         "System": f"{system}, CGAL {version('libcgal-dev')}, Open3D {version('python3-open3d')}, MeshLab {version('meshlab')}",
@@ -116,6 +117,11 @@ def summary(result):
             number = "5"
     behind = [f"{row[1]} (table {row[0].strip('[')[0]})" for row in rows if "behind" in row[-1]]
     words = f"Behind the paper's printed figures in: {'; '.join(behind)}." if behind else "Behind the paper's printed figures in none of these."
+    words += (" Of all triangles the scan's own are counted too, which an exact crown keeps as they are: where a scan has slivers, the tooth has them. "
+              "The worst tooth is chosen for each row by itself.")
+    if result["evaluated"]:
+        words += (" Roots of the generated teeth vary as published populations do, and a crown tells little of its root ([roots.md](roots.md)); the paper "
+                  "does not say whether the six cuts of one tooth may lie on both sides of its split into training and test.")
     return "## Summary\n\n" + words + "\n\n" + table(("table", "what", "ours", "paper", "we are"), rows)
 
 
@@ -183,7 +189,8 @@ def table_4(completed):
     return "## Table 4: seconds for a tooth\n\n" + (
         "Whole process from crown file to checked tooth with its report, networks loaded anew each time (the median of the runs, mean "
         "over the teeth); memory is the largest. The paper names neither its processor nor its stages; it has an NVIDIA 3090 Ti for "
-        "training. Two machines are compared here, not two programs on one.\n\n") + table(
+        "training. Two machines are compared here, not two programs on one. Crowns that are closed by a cap, as those of the scanned person, "
+        "take longer: the cap is looked for first.\n\n") + table(
             ("method", "teeth", "e = 1", "e = 0.75", "e = 0.5", "MB at most"), rows) + (
         "\nBy stage, mean over all teeth of the shortest of the runs:\n\n") + table(("e, mm", *stages, "sum"), steps)
 
@@ -255,15 +262,18 @@ def peer_tables(peers):
                      f"{q['q_avg']:.3f}", f"{q['theta_min']:.2g}", f"{q['percent_below_30']:.2f}",
                      f"{statistics.median(r['seconds'] for r in got):.2f}", f"{max(r['memory_mb'] for r in got):.0f}"))
         known = [r["figures"] for r in got if r.get("figures")]
+        rootless = sum(1 for r in got if "figures" in r and not r["figures"])
+        if rootless:
+            remarks.append(f"- {method}: on {rootless} teeth nothing below the crown that could be compared with a root.")
         if known:
             truth.append((method, len(known), f"{mean(abs(f['root_length_error_mm']) for f in known):.2f}",
                           f"{mean(f['matched_apex_distance_mm'] for f in known):.2f}", f"{mean(f['root_chamfer_mm'] for f in known):.2f}",
                           f"{mean(f['chamfer_l2_e3'] for f in known):.2f}", f"{mean(f['f_score'] for f in known):.2f}"))
     text = "## Peers: the same crowns in other programs\n\n" + (
         "Open crowns (samples and, with DATA, validation teeth), each method a process of its own from files to a file: seconds are the "
-        "median, memory the largest. Poisson reconstructions get the points with normals from which our own surface is made (iterative "
+        "median of one run each, memory that of the largest of its processes. Poisson reconstructions get the points with normals from which our own surface is made (iterative "
         "Poisson without the normals), so that prediction is not in their time and is in ours; so are our check and the networks. Hole filling "
-        "closes the crown and gives no root. \"Crown whole\": every triangle bit for bit. Kept and exact are shares in percent of the crown's triangles, "
+        "closes the crown and gives no root; the time of remeshing is that beside the union's. For the union the crown is closed, and the template, laid on the crown, is cut 1 mm above the middle of the crown's border. \"Crown whole\": every triangle bit for bit. Kept and exact are shares in percent of the crown's triangles, "
         "and of its vertices that lie within 1e-3 mm of the result. Figures of triangles are those of the whole mesh.\n\n")
     text += table(("method", "results", "solids", "crown whole", "triangles kept, %", "vertices exact, %", "farthest crown vertex, mm",
                    "Q avg", "theta min", "% < 30", "s", "MB"), fate)
