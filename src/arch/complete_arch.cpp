@@ -510,18 +510,6 @@ std::optional<double> ToothClearance::of_roots() const {
   return least;
 }
 
-bool has_size_of_arch(double millimetres_across, std::size_t teeth) {
-  // Lower incisors, the smallest of teeth, are 5 mm wide, and an arch of 16 bends to a third of its length.
-  return millimetres_across >= std::min(2.5 * static_cast<double>(teeth) + 1, 30.0) && millimetres_across <= 150;
-}
-
-CompleteOptions ArchOptions::skirt_and_repair() {
-  CompleteOptions options;
-  options.skirt = 0.5;
-  options.repair = true;
-  return options;
-}
-
 CompletedArch complete_arch(const LabelledScan& scan, const CompletionModels& models, const ArchOptions& options,
                             const ArchProgress& progress) {
   return complete(scan, models, options, progress, nullptr);

@@ -155,6 +155,20 @@ class HeaderReader {
 
 // The numbers of the body, whatever their encoding. `next` returns nothing if the body ends first.
 class Body {
+  template <class Number>
+  double parse(std::string_view word) const {
+    if constexpr (std::is_floating_point_v<Number>) {
+      if (const auto value = parse_number<Number>(word)) return static_cast<double>(*value);
+    } else if (const auto value = parse_number<double>(word)) {
+      // some programs write "3.0" for an integer
+      if (*value == std::floor(*value) && *value >= static_cast<double>(std::numeric_limits<Number>::lowest()) &&
+          *value <= static_cast<double>(std::numeric_limits<Number>::max()))
+        return *value;
+    }
+    throw InputError(fmt::format("line {}: '{:.30}' is not a number of the announced type", words_.line(), word),
+                     {words_.line()});
+  }
+
  public:
   Body(std::string_view bytes, const Header& header)
       : ascii_(header.encoding == Encoding::ascii),
@@ -191,20 +205,6 @@ class Body {
   }
 
  private:
-  template <class Number>
-  double parse(std::string_view word) const {
-    if constexpr (std::is_floating_point_v<Number>) {
-      if (const auto value = parse_number<Number>(word)) return static_cast<double>(*value);
-    } else if (const auto value = parse_number<double>(word)) {
-      // some programs write "3.0" for an integer
-      if (*value == std::floor(*value) && *value >= static_cast<double>(std::numeric_limits<Number>::lowest()) &&
-          *value <= static_cast<double>(std::numeric_limits<Number>::max()))
-        return *value;
-    }
-    throw InputError(fmt::format("line {}: '{:.30}' is not a number of the announced type", words_.line(), word),
-                     {words_.line()});
-  }
-
   bool ascii_;
   TextCursor words_;
   ByteCursor numbers_;

@@ -25,6 +25,9 @@ std::string text_of(const nlohmann::ordered_json& json);
 /// Why something was refused, as the report's "refused" has it: exit code, kind, sentence, and the ids concerned.
 nlohmann::ordered_json refusal_json(const Error& error);
 
+/// A value as a sentence quotes it: in one line of plain letters, of a long one the beginning.
+std::string shown(const nlohmann::ordered_json& json);
+
 /// What is to be done with the value of each name.
 using JsonTakers = std::map<std::string, std::function<void(const nlohmann::ordered_json&)>>;
 /// Hands each member of an object to what takes it. Throws UsageError where it is no object, for a name that nothing

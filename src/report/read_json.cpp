@@ -112,6 +112,8 @@ template <class T>
 T figures_from(std::string_view text, const char* what) {
   try {
     return Json::parse(text).get<T>();
+  } catch (const Json::parse_error& error) {  // its words quote the text, which may hold any bytes
+    throw InputError(fmt::format("This is not the JSON of {}: it is no JSON from byte {} on.", what, error.byte));
   } catch (const Json::exception& error) {
     throw InputError(fmt::format("This is not the JSON of {}: {}.", what, error.what()));
   }
@@ -119,15 +121,21 @@ T figures_from(std::string_view text, const char* what) {
 
 }  // namespace
 
+std::string shown(const nlohmann::ordered_json& json) {
+  constexpr std::size_t longest = 60;
+  const std::string text = json.dump(-1, ' ', true);
+  return text.size() <= longest ? text : text.substr(0, longest) + "...";
+}
+
 void take_members(const Json& json, const std::string& subject, const char* verb, const JsonTakers& takers) {
   if (!json.is_object()) throw UsageError(fmt::format("{} must be a JSON object.", subject));
   for (const auto& [name, value] : json.items()) {
     const auto taker = takers.find(name);
-    if (taker == takers.end()) throw UsageError(fmt::format("{} {} no \"{}\".", subject, verb, name));
+    if (taker == takers.end()) throw UsageError(fmt::format("{} {} no {}.", subject, verb, shown(name)));
     try {
       taker->second(value);
     } catch (const Json::exception&) {
-      throw UsageError(fmt::format("{}: the value of \"{}\" cannot be {}.", subject, name, value.dump()));
+      throw UsageError(fmt::format("{}: the value of \"{}\" cannot be {}.", subject, name, shown(value)));
     }
   }
 }

@@ -192,6 +192,33 @@ ScanInput labelled_scan(const fs::path& path, MeshFile file, std::string sha256,
   return input;
 }
 
+std::string_view without_blanks(std::string_view text) {
+  constexpr std::string_view blanks = " \t\v\f\r";
+  text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+  return text.substr(0, text.find_last_not_of(blanks) + 1);
+}
+
+/// "36,14.2", by hand: the standard library's regular expressions need stack for every letter of a line. Precondition:
+/// no blanks around it.
+std::optional<std::pair<const int, double>> length_in_line(std::string_view line) {
+  constexpr std::string_view digits = "0123456789";
+  const auto fdi = read_fdi(std::string(line.substr(0, 2)));
+  if (!fdi) return std::nullopt;
+  const std::string_view rest = line.substr(2);
+  std::string_view number = without_blanks(rest);
+  if (number.starts_with(',') || number.starts_with(';'))
+    number = without_blanks(number.substr(1));
+  else if (number.size() == rest.size())
+    return std::nullopt;
+  if (number.find_first_not_of("0123456789.") != std::string_view::npos || number.empty() ||
+      digits.find(number.front()) == std::string_view::npos || digits.find(number.back()) == std::string_view::npos)
+    return std::nullopt;
+  double mm = 0;
+  const auto [end, error] = std::from_chars(number.data(), number.data() + number.size(), mm);
+  if (end != number.data() + number.size() || error != std::errc()) return std::nullopt;
+  return std::pair<const int, double>(*fdi, mm);
+}
+
 }  // namespace
 
 ScanInput read_scan(const fs::path& path, const ScanLabelSource& source, double millimetres_per_unit) {
@@ -252,22 +279,17 @@ std::map<int, double> read_root_lengths(std::string_view text) {
   std::map<int, double> lengths;
   std::istringstream lines{std::string(text)};
   std::string line;
-  static const std::regex entry(R"(\s*([1-8][1-8])\s*[,;\t ]\s*([0-9]+(?:\.[0-9]+)?)\s*)"), nothing(R"(\s*(#.*)?)");
   for (int number = 1; std::getline(lines, line); ++number) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    std::smatch match;
-    if (std::regex_match(line, nothing)) continue;
-    const auto fdi = std::regex_match(line, match, entry) ? read_fdi(match[1].str()) : std::nullopt;
-    if (!fdi) {
+    const std::string_view content = without_blanks(line);
+    if (content.empty() || content.front() == '#') continue;
+    const auto entry = length_in_line(content);
+    if (!entry) {
       if (number == 1 && line.find_first_of("0123456789") == std::string::npos) continue;  // a heading
       throw InputError(
           fmt::format("Line {} of the root lengths is not a tooth and its length in mm, such as 36,14.2.", number));
     }
-    double mm = 0;
-    const std::string word = match[2];
-    std::from_chars(word.data(), word.data() + word.size(), mm);
-    if (!lengths.emplace(*fdi, mm).second)
-      throw InputError(fmt::format("Line {} of the root lengths names tooth {} a second time.", number, *fdi));
+    if (!lengths.insert(*entry).second)
+      throw InputError(fmt::format("Line {} of the root lengths names tooth {} a second time.", number, entry->first));
   }
   return lengths;
 }

@@ -34,7 +34,7 @@ Json object_from(std::string_view text, const char* what) {
 
 int tooth_number(const std::string& number) {
   const auto fdi = read_fdi(number);
-  if (!fdi) throw UsageError(fmt::format("There is no tooth {}.", number));
+  if (!fdi) throw UsageError(fmt::format("There is no tooth {}.", shown(number)));
   return *fdi;
 }
 

@@ -216,7 +216,10 @@ int arch_place_of_fdi(int fdi, int length) {
 LabelNumbers read_label_numbers(std::string_view word) {
   for (const LabelNumbers numbers : all_numbers)
     if (word == label_numbers_name(numbers)) return numbers;
-  throw UsageError(fmt::format("'{:.30}' is no numbering of labels: fdi, universal, arch14 or arch16", word));
+  std::string plain(word);
+  for (char& c : plain)
+    if ((c >= 0 && c < ' ') || c == '\x7f') c = '?';
+  throw UsageError(fmt::format("'{:.30}' is no numbering of labels: fdi, universal, arch14 or arch16", plain));
 }
 
 const char* label_numbers_name(LabelNumbers numbers) {

@@ -55,6 +55,15 @@ TEST(RootLengths, WhatIsNoneIsRefusedByItsLine) {
   }
 }
 
+TEST(RootLengths, LongLinesAndNumbersBeyondAllAreNoTrouble) {
+  const std::string many(1'000'000, 'a');
+  EXPECT_EQ(read_root_lengths("#" + many + "\n36,14.2\n"), (std::map<int, double>{{36, 14.2}}));
+  EXPECT_EQ(read_root_lengths(std::string(1'000'000, ' ') + "36 14.2"), (std::map<int, double>{{36, 14.2}}));
+  for (const std::string& text : {"36," + std::string(1'000'000, '9'), "11" + many, std::string("36,1.2.3"),
+                                  std::string("36,.5"), std::string("3614"), std::string("36,5.")})
+    EXPECT_THROW(read_root_lengths(text), InputError) << text.substr(0, 20);
+}
+
 /// Two domes of 8 mm beside a plane of gum, and their labels per vertex.
 struct MadeScan {
   std::string obj;
