@@ -20,7 +20,8 @@ FIXED = {
     2: [(f"there is no command '{GAP}': {GAP}", 'command line'),
         (f'there is no option {GAP}: did you mean {GAP}? (see {GAP} --help)', 'command line'),
         (f'{GAP} (see --help)', 'command line')],
-    5: [(f'a fault of the program: {GAP}', 'command line'), ("the machine's memory is not enough for this", 'command line')],
+    5: [(f'a fault of the program: {GAP}', 'command line'), ("the machine's memory is not enough for this", 'command line'),
+        ("the machine's memory, or the number of threads that it allows, is not enough for this", 'command line')],
     7: [(f'standard output cannot be written: {GAP}', 'command line')],
 }
 TITLES = {2: 'Wrong usage', 3: 'Unusable input', 4: 'No result', 5: 'Faults of the program', 7: 'Results that cannot be written'}

@@ -60,6 +60,9 @@ std::string error_line(const Error& error, const std::string& where_all_are) {
 
 std::string fault_line(const std::exception& fault) {
   if (dynamic_cast<const std::bad_alloc*>(&fault) != nullptr) return "the machine's memory is not enough for this";
+  // oneTBB tells of a thread for which there is no memory as a runtime error with these words
+  if (std::string_view(fault.what()).starts_with("pthread_create has failed"))
+    return "the machine's memory, or the number of threads that it allows, is not enough for this";
   return std::string("a fault of the program: ") + fault.what();
 }
 

@@ -17,6 +17,8 @@
 namespace rhizodont {
 namespace {
 
+constexpr std::size_t always_room = std::size_t{64} << 20, most_per_byte = 40;
+
 struct Document {
   pugi::xml_document xml;
   VtkStorage storage;
@@ -59,6 +61,7 @@ void open_document(std::string_view bytes, Document& document) {
     throw InputError("this is no VTK file with surface data (PolyData)");
   const std::string_view compressor = root.attribute("compressor").as_string();
   VtkStorage& storage = document.storage;
+  storage.room = always_room + most_per_byte * bytes.size();
   storage.compression = compression_named(compressor);
   storage.wide_header = std::string_view(root.attribute("header_type").as_string()) == "UInt64";
   storage.byte_order = std::string_view(root.attribute("byte_order").as_string()) == "BigEndian" ? std::endian::big
@@ -68,8 +71,7 @@ void open_document(std::string_view bytes, Document& document) {
 
 class PieceReader {
  public:
-  PieceReader(const VtkStorage& storage, MeshFile& file, FaceList& faces)
-      : storage_(storage), file_(file), faces_(faces) {}
+  PieceReader(VtkStorage& storage, MeshFile& file, FaceList& faces) : storage_(storage), file_(file), faces_(faces) {}
 
   void read(const pugi::xml_node& piece, bool with_attributes) {
     const std::size_t first = file_.mesh.vertices.size();
@@ -177,7 +179,7 @@ class PieceReader {
       add_colours(file_, colours_of(array.values, array.components));
   }
 
-  const VtkStorage& storage_;
+  VtkStorage& storage_;
   MeshFile& file_;
   FaceList& faces_;
   std::size_t added_ = 0, added_faces_ = 0, cells_before_ = 0;

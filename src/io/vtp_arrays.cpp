@@ -27,7 +27,7 @@ std::optional<VtkNumber> number_type(std::string_view name) {
 
 class ArrayReader {
  public:
-  ArrayReader(const pugi::xml_node& node, const VtkStorage& storage)
+  ArrayReader(const pugi::xml_node& node, VtkStorage& storage)
       : node_(node), storage_(storage), name_(node.attribute("Name").as_string("without a name")) {}
 
   VtkArray read() {
@@ -44,7 +44,7 @@ class ArrayReader {
     else if (format == "binary")
       array.values = numbers_from(*type, unpack(decode_base64(node_.text().get())), storage_.byte_order);
     else if (format == "appended")
-      array.values = numbers_from(*type, unpack(appended_bytes()), storage_.byte_order);
+      array.values = numbers_from(*type, unpack_appended(), storage_.byte_order);
     else
       fail(fmt::format("is stored as '{:.30}', which is not read", format));
     return array;
@@ -66,11 +66,18 @@ class ArrayReader {
     return values;
   }
 
-  std::string appended_bytes() const {
+  void take_room(std::uint64_t size) {
+    if (size > storage_.room) fail("is not read: together the file's arrays hold far more than a mesh of its size");
+    storage_.room -= size;
+  }
+
+  std::string unpack_appended() {
     const std::uint64_t offset = node_.attribute("offset").as_ullong(UINT64_MAX);
     if (offset >= storage_.appended.size()) fail("begins after the end of the file");
     const std::string_view rest = storage_.appended.substr(offset);
-    return storage_.appended_raw ? std::string(rest) : decode_base64(rest);
+    if (storage_.appended_raw) return unpack(rest);
+    take_room(rest.size());
+    return unpack(decode_base64(rest));
   }
 
   std::uint64_t read_size(ByteCursor& cursor) const {
@@ -79,15 +86,16 @@ class ArrayReader {
   }
 
   // Takes off the sizes in front, and the compression.
-  std::string unpack(const std::string& bytes) const {
+  std::string unpack(std::string_view bytes) {
     ByteCursor cursor(bytes, storage_.byte_order);
     if (storage_.compression != VtkCompression::none) return inflate_blocks(bytes, cursor);
     const std::uint64_t size = read_size(cursor);
     if (size > cursor.remaining()) fail("is cut off");
-    return bytes.substr(cursor.place(), size);
+    take_room(size);
+    return std::string(bytes.substr(cursor.place(), size));
   }
 
-  std::string inflate_blocks(const std::string& bytes, ByteCursor& cursor) const {
+  std::string inflate_blocks(std::string_view bytes, ByteCursor& cursor) {
     const std::uint64_t count = read_size(cursor), block_size = read_size(cursor), last_size = read_size(cursor);
     if (count > cursor.remaining() / 4) fail("is cut off");
     std::vector<std::uint64_t> packed_sizes(count);
@@ -98,6 +106,7 @@ class ArrayReader {
       if (packed_sizes[k] > cursor.remaining()) fail("is cut off");
       // zlib packs at most about 1 : 1032, LZ4 1 : 255; a larger promise is a lie and would only cost memory
       if (size > 1100 * packed_sizes[k] + 64) fail("is damaged");
+      take_room(size);
       const std::size_t start = unpacked.size();
       unpacked.resize(start + size);
       if (!unpack_block({bytes.data() + cursor.place(), packed_sizes[k]}, {unpacked.data() + start, size}))
@@ -130,14 +139,12 @@ class ArrayReader {
   }
 
   const pugi::xml_node& node_;
-  const VtkStorage& storage_;
+  VtkStorage& storage_;
   std::string name_;
 };
 
 }  // namespace
 
-VtkArray read_vtk_array(const pugi::xml_node& node, const VtkStorage& storage) {
-  return ArrayReader(node, storage).read();
-}
+VtkArray read_vtk_array(const pugi::xml_node& node, VtkStorage& storage) { return ArrayReader(node, storage).read(); }
 
 }  // namespace rhizodont

@@ -23,6 +23,8 @@ struct VtkStorage {
   VtkCompression compression = VtkCompression::none;  ///< of blocks
   bool appended_raw = false;                          ///< the appended section holds bytes, not base64
   std::string_view appended;                          ///< the appended section, after its underscore
+  /// Bytes that arrays may still be unpacked to: any number of them may name the same few bytes.
+  std::size_t room = 0;
 };
 
 /// Numbers of a DataArray element.
@@ -32,7 +34,8 @@ struct VtkArray {
   std::vector<double> values;
 };
 
-/// Throws InputError, naming the array, if it is damaged or stored in a way that is not read.
-VtkArray read_vtk_array(const pugi::xml_node& node, const VtkStorage& storage);
+/// Takes what it unpacks from the storage's room. Throws InputError, naming the array, if it is damaged, stored in a
+/// way that is not read, or larger than the room.
+VtkArray read_vtk_array(const pugi::xml_node& node, VtkStorage& storage);
 
 }  // namespace rhizodont

@@ -229,6 +229,25 @@ TEST(Vtp, DamagedLz4IsRefused) {
   expect_refused("a.vtp", text, "is damaged");
 }
 
+TEST(Vtp, ArraysThatAllNameTheSameBytesAreNotUnpackedWithoutEnd) {
+  constexpr std::uint32_t size = 1 << 20;
+  std::string arrays;
+  for (int k = 0; k < 200; ++k)
+    arrays += fmt::format(R"(<DataArray type="UInt8" Name="a{}" format="appended" offset="0"/>)", k);
+  const std::string text =
+      R"(<VTKFile type="PolyData"><PolyData><Piece NumberOfPoints="3"><PointData>)" + arrays +
+      R"(</PointData><Points><DataArray type="Float32" NumberOfComponents="3">0 0 0 1 0 0 0 1 0)"
+      R"(</DataArray></Points><Polys><DataArray type="Int32" Name="connectivity">0 1 2</DataArray>)"
+      R"(<DataArray type="Int32" Name="offsets">3</DataArray></Polys></Piece></PolyData>)"
+      R"(<AppendedData encoding="raw">_)" +
+      test::Bytes().add(size).str() + std::string(size, '\0') + "</AppendedData></VTKFile>";
+  const MeshFile file = load_bytes("a.vtp", text);
+  EXPECT_EQ(file.mesh.triangles.size(), 1U);
+  ASSERT_EQ(file.notes.size(), 200U);
+  EXPECT_NE(file.notes.front().find("has 1048576 values for 3 points"), std::string::npos) << file.notes.front();
+  EXPECT_NE(file.notes.back().find("far more than a mesh of its size"), std::string::npos) << file.notes.back();
+}
+
 TEST(Vtp, ValuesThatDoNotFitAreNoted) {
   const MeshFile good = load_bytes("a.vtp", VtpWriter({}).write());
   for (const auto& [what, by, note] : std::vector<std::array<std::string, 3>>{
