@@ -59,7 +59,7 @@ class Worker:
     """A process that completes crowns until one ends it."""
 
     def __init__(self, program):
-        self.program, self.process = program, None
+        self.program, self.process, self.read = program, None, b''
 
     def seconds(self):
         fields = pathlib.Path(f'/proc/{self.process.pid}/stat').read_text().rpartition(')')[2].split()
@@ -68,26 +68,28 @@ class Worker:
     def line(self, most_seconds):
         """The next line, or how the program ended instead."""
         begun, clock = self.seconds(), time.monotonic()
-        while not select.select([self.process.stdout], [], [], 0.5)[0]:
-            if self.seconds() - begun > most_seconds or time.monotonic() - clock > MOST_WAITING:
+        while b'\n' not in self.read:
+            if select.select([self.process.stdout], [], [], 0.5)[0]:
+                more = os.read(self.process.stdout.fileno(), 65536)
+                self.read += more
+                if not more:
+                    code = self.process.wait()
+                    self.process = None
+                    return f'crashed|{signal.Signals(-code).name if code < 0 else f"ended with {code}"}'
+            elif self.seconds() - begun > most_seconds or time.monotonic() - clock > MOST_WAITING:
                 self.process.kill()
                 self.process.wait()
                 self.process = None
                 return 'hangs|'
-        line = self.process.stdout.readline().rstrip('\n')
-        if line:
-            return line
-        code = self.process.wait()
-        self.process = None
-        return f'crashed|{signal.Signals(-code).name if code < 0 else f"ended with {code}"}'
+        line, _, self.read = self.read.partition(b'\n')
+        return line.decode(errors='replace')
 
     def complete(self, crown):
         """(outcome, sentence, s of processor time)"""
         if self.process is None:
-            self.process = subprocess.Popen([self.program, SOURCE], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                            text=True, errors='replace', bufsize=1)
-        self.process.stdin.write(crown + '\n')
-        self.process.stdin.flush()
+            self.process = subprocess.Popen([self.program, SOURCE], stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
+            self.read = b''
+        self.process.stdin.write(crown.encode() + b'\n')
         ready = self.line(600)  # the making of the crown, which is the tests' own
         if ready != 'ready':
             return ('unmade', ready, 0)
