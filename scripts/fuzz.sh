@@ -37,7 +37,7 @@ for target in "${targets[@]}"; do
   "$build/tests/fuzz/fuzz_$target" "$corpus" "${committed[@]}" -max_total_time="$(awk "BEGIN { print int(60 * $minutes) }")" \
     -dict="tests/fuzz/dictionaries/$target.dict" -max_len=8192 -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
     -artifact_prefix="$findings/" > "$log" 2>&1 || bad=1
-  awk -v target="$target" -v kept="$(find "$corpus" -type f | wc -l)" -v findings="$(find "$findings" -type f | wc -l)" '
+  awk -v target="$target" -v kept="$(find "$corpus" -type f | wc -l)" -v findings="$(find "$findings" -type f -not -name 'slow-unit*' | wc -l)" '
     / DONE / { seconds = 0 } /^Done / { seconds = $(NF - 1) }
     /number_of_executed_units/ { runs = $2 } /average_exec_per_sec/ { each = $2 }
     END { printf "| %s | %s | %s | %s | %s | %s |\n", target, seconds + 0, runs, each, kept, findings }' "$log"
