@@ -66,8 +66,11 @@ class Command:
         return [str(self.program), *(word.replace('@', str(folder)) for word in self.words)]
 
     def run(self, folder, **more):
-        return subprocess.run(self.line(folder), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                              text=True, errors='replace', timeout=MOST_SECONDS, **more)
+        try:
+            return subprocess.run(self.line(folder), stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                  text=True, errors='replace', timeout=MOST_SECONDS, **more)
+        except subprocess.TimeoutExpired:
+            return subprocess.CompletedProcess(self.words, 124, '', f'no end in {MOST_SECONDS} s')
 
     def limited(self, folder, kind, value):
         return self.run(folder, preexec_fn=lambda: resource.setrlimit(kind, (value, resource.getrlimit(kind)[1])))
