@@ -20,7 +20,7 @@ read -r -a options <<<"${OPTIONS:-}"
 
 inputs=("$data"/arches/*.ply)
 for patient in "$data"/crowns/patient*; do
-  for jaw in upper:[12] lower:[34]; do
+  for jaw in 'upper:[12]' 'lower:[34]'; do
     folder=$out/in/$(basename "$patient")_${jaw%:*}
     mkdir -p "$folder"
     for crown in "$patient"/crown_${jaw#*:}?.ply; do ln -sf "$crown" "$folder/"; done

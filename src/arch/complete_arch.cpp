@@ -175,17 +175,10 @@ std::vector<Attempt> attempts_for(int fdi, const std::map<int, ToothDirections>&
   return attempts;
 }
 
-/// What is left of a crown may be hung on its border anyhow, upside down too; its neighbours know better.
-void require_upright(const CompletedTooth& tooth, const std::optional<ToothDirections>& place) {
-  constexpr double most_off = 60;  // degrees; borders of real scans lean by up to 40
-  if (!place) return;
-  const double cosine = std::clamp(tooth.record.frame.growth_axis.dot(place->occlusal), -1.0, 1.0);
-  const double off = std::acos(cosine) * 180 / std::numbers::pi;
-  if (off > most_off)
-    throw NoResultError(
-        fmt::format("The tooth would stand {:.0f} degrees off the way that its neighbours tell. Is enough of its crown "
-                    "there, and is it erupted?",
-                    off));
+/// Degrees between a tooth's axis and the way that its neighbours tell; 0 where they tell none.
+double degrees_off(const CompletedTooth& tooth, const std::optional<ToothDirections>& place) {
+  if (!place) return 0;
+  return std::acos(std::clamp(tooth.record.frame.growth_axis.dot(place->occlusal), -1.0, 1.0)) * 180 / std::numbers::pi;
 }
 
 /// Who labelled the crown took all of it for tooth.
@@ -199,27 +192,30 @@ void warn_of_loss(CompletionRecord& record) {
                     crown.kept_triangles, crown.triangles));
 }
 
-/// The first attempt that gives a tooth. Throws as the first one where none does.
+/// The first attempt that gives a tooth. Throws as the first one where none does, or says that it would not stand in
+/// the arch: what is left of a crown may be hung on its border anyhow, upside down too, and its neighbours know better.
 MadeTooth complete_one(const TriangleMesh& crown, const std::vector<Attempt>& attempts,
                        const CompletionModels& models) {
   const std::optional<ToothDirections>& place = attempts.front().options.directions;
+  constexpr double most_off = 60;  // degrees; borders of real scans lean by up to 40
   std::exception_ptr refused;
-  std::optional<bool> unusable;  // with a skirt that is looked for, or kept
   for (const Attempt& attempt : attempts) {
-    if (unusable == attempt.options.skirt.has_value()) continue;
     try {
       const PreparedTooth prepared = prepare_tooth(crown, models, attempt.options);
       CompletedTooth tooth = finish_tooth(prepared, attempt.options.steering, attempt.options.transition);
-      require_upright(tooth, place);
+      if (const double off = degrees_off(tooth, place); off > most_off) {
+        refused = std::make_exception_ptr(NoResultError(
+            fmt::format("The tooth would stand {:.0f} degrees off the way that its neighbours tell. Is enough of its "
+                        "crown there, and is it erupted?",
+                        off)));
+        continue;
+      }
       mark_contacts(tooth);
       warn_of_loss(tooth.record);
       if (!attempt.warning.empty()) tooth.record.warnings.push_back(attempt.warning);
       return {prepared, std::move(tooth), ""};
     } catch (const UsageError&) {
       throw;
-    } catch (const InputError&) {  // however it stands
-      unusable = attempt.options.skirt.has_value();
-      if (!refused) refused = std::current_exception();
     } catch (const Error&) {
       if (!refused) refused = std::current_exception();
     }

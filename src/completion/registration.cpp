@@ -273,8 +273,8 @@ CrownFrame frame_from(const OrientedPoints& points, const Eigen::Vector3d& axis,
 }
 
 /// As `frame_from`, of a crown whose axis and `buccal` the arch tells: +y is not far from `buccal`, and is `buccal`
-/// itself where the registration turns away from it. The form leans against an axis that knows of the tooth's place,
-/// not against a border alone; either is as good, so half of the lean is told.
+/// itself where the registration turns away from it. The form's lean is against an axis that knows of the tooth's
+/// place, not against a border alone: two estimates of one axis, each taken for half (measured in docs/arches.md).
 CrownFrame frame_near(const OrientedPoints& points, const Eigen::Vector3d& axis, const Point& centre, bool right_side,
                       const Eigen::Vector3d& buccal, const MeanCrown& mean, const RegistrationOptions& options) {
   constexpr double furthest_start = std::numbers::pi / 4, furthest_found = std::numbers::pi / 3;

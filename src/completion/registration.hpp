@@ -36,7 +36,7 @@ struct CrownFrame {
   double residual_mm = 0;  ///< as in RigidFit
   /// x and y, canonical, of the mean crown's growth axis where it lies on this crown: how far the crown's form leans
   /// against its border. A gum line leans with the gum, a cut across the tooth's long axis with the root. At most 0.5
-  /// long: what seems to lean by more than 30 degrees was laid badly.
+  /// long: what seems to lean by more than 30 degrees was laid badly. Half of it where an arch's directions are given.
   Eigen::Vector2d form_axis = Eigen::Vector2d::Zero();
 
   /// That axis as a unit vector, canonical.

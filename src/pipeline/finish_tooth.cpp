@@ -179,6 +179,10 @@ void finish(const PreparedTooth::Content& prepared, StageClock& clock, Completed
   note_fusion(fused, record.joining);
   record.warnings.insert(record.warnings.end(), fused.warnings.begin(), fused.warnings.end());
   record.root = root_record(crown.mesh, fused.tooth.mesh, growth_axis, record.root.source);
+  if (!steering.any() && record.root.length_mm < shortest_root_mm)
+    throw NoResultError(fmt::format(
+        "The root would be only {:.1f} mm long. Is the crown whole, and is its open base where the root is to begin?",
+        record.root.length_mm));
   note_uncertainty(crown, fused.tooth.mesh, predicted, growth_axis, steering, tooth);
 
   clock.begin("check");

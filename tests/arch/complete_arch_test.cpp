@@ -127,7 +127,12 @@ TEST(CompleteArch, AToothThatWouldStandUpsideDownIsRefused) {
   ArchOptions options;
   options.tooth.e = 1.5;
   const CompletedArch arch = complete_arch(scan, models(), options);
-  for (const ToothOfArch& tooth : arch.teeth) EXPECT_EQ(tooth.tooth.has_value(), tooth.fdi != 36) << tooth.refusal;
+  for (const ToothOfArch& tooth : arch.teeth) {
+    EXPECT_EQ(tooth.tooth.has_value(), tooth.fdi != 36) << tooth.refusal;
+    if (tooth.fdi == 36) {
+      EXPECT_NE(tooth.refusal.find("degrees off"), std::string::npos) << tooth.refusal;
+    }
+  }
 }
 
 TEST(CompleteArch, IsCancelledByWhatTheCallbackThrows) {
