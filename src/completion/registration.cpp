@@ -170,6 +170,7 @@ Eigen::Matrix3d about_z(double angle) { return Eigen::AngleAxisd(angle, Eigen::V
 
 std::vector<Eigen::Matrix3d> rotations_about_z(int count) {
   std::vector<Eigen::Matrix3d> rotations;
+  rotations.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) rotations.push_back(about_z(2 * std::numbers::pi * i / count));
   return rotations;
 }
@@ -321,7 +322,7 @@ TypeGuess guess_fdi_type(const PreparedCrown& crown, const Atlas& atlas, const R
   const OrientedPoints points = surface_points(crown.mesh);
   const Point centre = area_centroid(crown.mesh);
   for (const MeanCrown& mean : atlas.types) check_mean(mean);
-  std::array<CrownFrame, 2 * tooth_type_count> frames;
+  std::array<CrownFrame, std::size_t{2} * tooth_type_count> frames;
   const auto fit = [&](std::size_t i, const OrientedPoints& cloud, const RegistrationOptions& how) {
     frames[i] = frame_from(cloud, crown.growth_axis, centre, i % 2 == 1, atlas.types[i / 2], how);
   };
@@ -336,7 +337,7 @@ TypeGuess guess_fdi_type(const PreparedCrown& crown, const Atlas& atlas, const R
   rough.refined_starts = std::min(2, options.refined_starts);
   rough.iterations = std::min(6, options.iterations);
   parallel_tasks(frames.size(), [&](std::size_t i) { fit(i, few, rough); });
-  std::array<std::size_t, 2 * tooth_type_count> order{};
+  std::array<std::size_t, std::size_t{2} * tooth_type_count> order{};
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
                    [&frames](std::size_t a, std::size_t b) { return frames[a].residual_mm < frames[b].residual_mm; });

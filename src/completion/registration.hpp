@@ -54,7 +54,7 @@ CrownFrame canonical_frame(const PreparedCrown& crown, int fdi, const MeanCrown&
 struct TypeGuess {
   int fdi = 0;       ///< best of the 32 permanent numbers (residuals of left and right included)
   CrownFrame frame;  ///< canonical frame for that number
-  std::array<double, 2 * tooth_type_count> residuals_mm{};  ///< [2 * type + (right side ? 1 : 0)]
+  std::array<double, std::size_t{2} * tooth_type_count> residuals_mm{};  ///< [2 * type + (right side ? 1 : 0)]
 };
 
 /// Tries all 16 types on both sides and returns the best. Throws as canonical_frame.
