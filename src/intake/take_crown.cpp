@@ -10,6 +10,7 @@
 #include "mesh/diagnosis.hpp"
 #include "mesh/pieces.hpp"
 #include "mesh/repair.hpp"
+#include "mesh/self_intersection.hpp"
 #include "rhizodont/error.hpp"
 #include "skirt/made_cap.hpp"
 #include "skirt/ragged_part.hpp"
@@ -267,6 +268,11 @@ KeptCrown part_without_cap(const TriangleMesh& closed, const std::vector<bool>& 
   return kept;
 }
 
+/// Nothing of it is to be repaired: a spike taken off would open it in a place that is no base.
+bool is_sound_and_closed(const TriangleMesh& crown) {
+  return diagnose(crown).is_closed_solid() && self_intersecting_triangles(crown).empty();
+}
+
 /// The usable part of the crown, repaired if asked for; without it specks alone are taken off, unless a skirt is: all
 /// that is beside the tooth goes with it. A made cap goes before anything is cut: it may cut itself or the crown, and
 /// what a cut leaves of it is no longer known for a cap.
@@ -281,7 +287,8 @@ KeptCrown mended_part(const TriangleMesh& crown, const Tools& tools, const Compl
       return part_of_repaired(crown, std::move(connected), record, [&](const TriangleMesh& closed) {
         return part_without_cap(closed, *is_cap, tools, options, record);
       });
-    return part_of_repaired(crown, repair(crown), record, take);
+    const bool sound = options.cap != CapHandling::keep && is_sound_and_closed(connected.mesh);
+    return part_of_repaired(crown, sound ? std::move(connected) : repair(crown), record, take);
   }
   if (options.skirt) {
     if (const auto is_cap = droppable_made_cap(crown, options))

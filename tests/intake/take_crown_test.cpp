@@ -5,7 +5,9 @@
 
 #include "common/closed_bases.hpp"
 #include "common/hostile_crowns.hpp"
+#include "mesh/diagnosis.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/repair.hpp"
 #include "mesh/self_intersection.hpp"
 #include "mesh/test_meshes.hpp"
 #include "pipeline/models.hpp"
@@ -16,9 +18,11 @@
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <string>
 #include <utility>
 
@@ -84,6 +88,23 @@ TEST(MadeCap, IsKnownOnceTheTrianglesHangTogether) {
   exact.dropped_vertices = vertices_not_of_tooth(tooth.record);
   const CheckReport report = check(crown, tooth.mesh, exact);
   EXPECT_TRUE(report.holds()) << (report.failures.empty() ? "" : report.failures.front());
+}
+
+TEST(ClosedCrown, ThatIsSoundIsNotOpenedByItsRepair) {
+  const std::filesystem::path folder = source_folder / "../shared/data/lower_scan";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no real crowns at " << folder;
+  for (const int fdi : {31, 46}) {
+    const TriangleMesh closed = load_mesh(folder / fmt::format("crown_{}.ply", fdi)).mesh;
+    ASSERT_TRUE(diagnose(closed).border_edges.empty());
+    // What it takes for a spike is none of the base's.
+    EXPECT_FALSE(diagnose(repair(closed).mesh).border_edges.empty());
+    CompleteOptions options = test::for_tooth(fdi);
+    const TakenCrown as_it_is = taken(closed, options);
+    options.repair = true;
+    const TakenCrown repaired = taken(closed, options);
+    EXPECT_TRUE(repaired.record.cap_dropped);
+    EXPECT_EQ(repaired.kept.old_vertices, as_it_is.kept.old_vertices);
+  }
 }
 
 /// The options that a refusal of the crown names.
