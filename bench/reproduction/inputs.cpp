@@ -44,6 +44,14 @@ ToothVariation variation_of(const std::string& mark) {
   return variation;
 }
 
+/// Two vertices more, which no triangle has, with 0 and `most`: pictures of several meshes share one scale.
+void add_scale_ends(TriangleMesh& mesh, std::vector<double>& values, double most) {
+  for (const double end : {0.0, most}) {
+    mesh.vertices.push_back(mesh.vertices.front());
+    values.push_back(end);
+  }
+}
+
 }  // namespace
 
 TriangleMesh open_crown(const TriangleMesh& crown, int fdi, const CompletionModels& models) {
@@ -73,10 +81,7 @@ MeshFile with_deviation(const TriangleMesh& crown, const TriangleMesh& surface, 
   std::vector<double> distances;
   const ClosestPointIndex index(surface);
   for (const Point& p : crown.vertices) distances.push_back(std::min(most_mm, index.closest(p).distance));
-  for (const double end : {0.0, most_mm}) {
-    file.mesh.vertices.push_back(crown.vertices.front());
-    distances.push_back(end);
-  }
+  add_scale_ends(file.mesh, distances, most_mm);
   file.vertex_attributes["deviation_mm"] = {AttributeType::float32, std::move(distances)};
   return file;
 }
@@ -90,10 +95,7 @@ MeshFile with_quality(const TriangleMesh& mesh) {
       double& at = worst[static_cast<std::size_t>(v)];
       at = std::min(at, triangle_quality(mesh, t));
     }
-  for (const double end : {0.0, 1.0}) {
-    file.mesh.vertices.push_back(mesh.vertices.front());
-    worst.push_back(end);
-  }
+  add_scale_ends(file.mesh, worst, 1);
   file.vertex_attributes["quality"] = {AttributeType::float32, std::move(worst)};
   return file;
 }

@@ -25,8 +25,8 @@ struct MarkedTooth {
 /// Depends on the arguments alone. Throws UsageError for another mark, and as `generate_tooth` and `trim_clean`.
 MarkedTooth marked_tooth(const std::filesystem::path& data, int fdi, std::uint64_t seed, const std::string& mark);
 
-/// The crown with `deviation_mm` per vertex, its distance from a surface, at most `most_mm`. A last vertex, which no
-/// triangle has, carries `most_mm` itself, so that pictures of several crowns share one scale.
+/// The crown with `deviation_mm` per vertex, its distance from a surface, at most `most_mm`. Two last vertices,
+/// which no triangle has, carry 0 and `most_mm`, so that pictures of several crowns share one scale.
 MeshFile with_deviation(const TriangleMesh& crown, const TriangleMesh& surface, double most_mm);
 
 /// The mesh with `quality` per vertex, that of its worst triangle, on a scale from 0 to 1 as above.
