@@ -12,6 +12,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace rhizodont {
@@ -63,6 +64,8 @@ struct Clearance {
 /// Both made by `tooth_surface`. @param within  as in `part_clearances`
 Clearance clearance_of(const SolidSurface& first, const SolidSurface& second,
                        double within = std::numeric_limits<double>::infinity());
+
+using ToothPair = std::pair<std::size_t, std::size_t>;  ///< numbers of teeth, lower first
 
 struct NeighbourOptions {
   double within = 10;  ///< mm, > 0: teeth that come no nearer are no neighbours

@@ -14,6 +14,7 @@
 #include "mesh/geometry.hpp"
 #include "mesh/space_order.hpp"
 #include "pipeline/models.hpp"
+#include "pipeline/moved_tooth.hpp"
 #include "pipeline/prepared_tooth.hpp"
 #include "rhizodont/arch.hpp"
 #include "rhizodont/error.hpp"
@@ -368,6 +369,11 @@ TriangleMesh in_millimetres(const CompletedTooth& tooth) {
   return mesh;
 }
 
+SourcedTooth sourced(const CompletedTooth& tooth) {
+  return {in_millimetres(tooth), crown_and_root(tooth), static_cast<int>(tooth.record.crown.kept_vertices.size()),
+          tooth.record.crown.kept_triangles};
+}
+
 std::optional<double> millimetres(const std::optional<Approach>& approach) {
   return approach ? std::optional(approach->mm) : std::nullopt;
 }
@@ -388,6 +394,20 @@ void measure_clearances(CompletedArch& arch, bool upper) {
   std::vector<std::vector<double>> per_vertex = vertex_clearances(teeth);
   for (std::size_t i = 0; i < per_vertex.size(); ++i)
     if (teeth[i] != nullptr) arch.teeth[i].clearance = std::move(per_vertex[i]);
+}
+
+/// Takes the tooth's new surface back to where it is in `pressed`; it stays where that would not keep the promises.
+void press(CompletedArch& arch, ToothOfArch& tooth, const TriangleMesh& pressed, double mm) {
+  try {
+    tooth.tooth = moved_tooth(tooth.crown, *tooth.tooth, pressed.vertices);
+    tooth.tooth->record.warnings.push_back(
+        fmt::format("Its new surface gave way by up to {:.1f} mm where it lay in a neighbour: the scan does not show "
+                    "what is between them.",
+                    mm));
+  } catch (const NoResultError& error) {
+    arch.notes.push_back(
+        fmt::format("Tooth {} could not give way where it lies in a neighbour: {}", tooth.fdi, error.what()));
+  }
 }
 
 /// Brings roots of one jaw apart; what cannot be is said in the arch's notes.
@@ -413,7 +433,7 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
     const auto& interval = tooth.tooth->record.root.interval;
     if (interval && !options.root_lengths.contains(tooth.fdi))
       roots.back().shortest_mm = std::min(interval->length_low_mm, roots.back().length_mm);
-    teeth.push_back({in_millimetres(*tooth.tooth), crown_and_root(*tooth.tooth)});
+    teeth.push_back(sourced(*tooth.tooth));
   }
   std::map<std::size_t, CompletedTooth> made;
   const auto finish = [&](std::size_t number, const RootSteering& steering) {
@@ -421,24 +441,26 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
     CompletedTooth tooth = finish_tooth(prepared[i].value(), steering, options.tooth.transition);
     tooth.record.root.interval = arch.teeth[i].tooth->record.root.interval;
     mark_contacts(tooth);
-    SourcedTooth sourced{in_millimetres(tooth), crown_and_root(tooth)};
+    SourcedTooth handed_on = sourced(tooth);
     made.insert_or_assign(number, std::move(tooth));
-    return sourced;
+    return handed_on;
   };
   ResolveOptions how;
   how.search.clearance = options.clearance_mm;
   const ResolvedCollisions resolved = resolve_collisions(roots, teeth, finish, how);
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    if (resolved.cost_mm[k] == 0) continue;
     ToothOfArch& tooth = arch.teeth[numbers[k]];
-    // The last that was made need not be the one that was taken.
-    const auto last = made.find(k);
-    if (last == made.end() || last->second.options.steering != resolved.steering[k]) finish(k, resolved.steering[k]);
-    CompletedTooth& changed = made.at(k);
-    keep_warnings(changed.record, tooth.tooth->record);
-    tooth.tooth = std::move(changed);
-    tooth.tooth->record.warnings.push_back(fmt::format(
-        "The root was changed by {:.1f} mm at its end to keep clear of its neighbours.", resolved.cost_mm[k]));
+    if (resolved.cost_mm[k] != 0) {
+      // The last that was made need not be the one that was taken.
+      const auto last = made.find(k);
+      if (last == made.end() || last->second.options.steering != resolved.steering[k]) finish(k, resolved.steering[k]);
+      CompletedTooth& changed = made.at(k);
+      keep_warnings(changed.record, tooth.tooth->record);
+      tooth.tooth = std::move(changed);
+      tooth.tooth->record.warnings.push_back(fmt::format(
+          "The root was changed by {:.1f} mm at its end to keep clear of its neighbours.", resolved.cost_mm[k]));
+    }
+    if (resolved.pressed_mm[k] != 0) press(arch, tooth, resolved.teeth[k].mesh, resolved.pressed_mm[k]);
   }
   for (const UnresolvedCollision& left : resolved.unresolved) arch.notes.push_back(left.sentence);
   arch.notes.insert(arch.notes.end(), resolved.notes.begin(), resolved.notes.end());

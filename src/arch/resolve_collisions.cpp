@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "arch/resolve_collisions.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "mesh/at.hpp"
 #include "rhizodont/error.hpp"
 
@@ -19,6 +20,7 @@ namespace rhizodont {
 namespace {
 
 constexpr double enough = 1e-3;  // mm: to be as near as this to what was wanted is to have it
+constexpr double hardly_less = 0.9;
 
 bool same(const RootSteering& a, const RootSteering& b) {
   return a.length_mm == b.length_mm && a.tip_degrees == b.tip_degrees && a.torque_degrees == b.torque_degrees &&
@@ -27,25 +29,27 @@ bool same(const RootSteering& a, const RootSteering& b) {
 
 /// A finished tooth in the zones of its trial tooth: each new triangle is where the trial tooth is nearest. `trial`: so
 /// steered; empty of a root that stays as it is, all of which is neck.
-SolidSurface in_zones(const SourcedTooth& tooth, const TriangleMesh& trial, const std::vector<int>& trial_zones) {
+SolidSurface in_zones(const TriangleMesh& tooth, const std::vector<VertexSource>& source, const TriangleMesh& trial,
+                      const std::vector<int>& trial_zones) {
   std::optional<SolidSurface> guide;
   if (!trial.vertices.empty()) guide.emplace(trial, trial_zones, root_zone_count);
-  std::vector<int> zones(tooth.mesh.triangles.size(), static_cast<int>(RootZone::crown));
+  std::vector<int> zones(tooth.triangles.size(), static_cast<int>(RootZone::crown));
   tbb::parallel_for(std::size_t{0}, zones.size(), [&](std::size_t k) {
-    const Triangle& t = tooth.mesh.triangles[k];
-    if (std::all_of(t.begin(), t.end(), [&](int v) { return tooth.source[at(v)] == VertexSource::scan; })) return;
+    const Triangle& t = tooth.triangles[k];
+    if (std::all_of(t.begin(), t.end(), [&](int v) { return source[at(v)] == VertexSource::scan; })) return;
     Point middle = Point::Zero();
-    for (const int v : t) middle += tooth.mesh.vertices[at(v)] / 3;
+    for (const int v : t) middle += tooth.vertices[at(v)] / 3;
     const int zone = guide ? guide->part_of(guide->signed_distance(middle)->triangle) : 0;
     zones[k] = std::max(zone, static_cast<int>(RootZone::neck));
   });
-  return SolidSurface(tooth.mesh, std::move(zones), root_zone_count);
+  return SolidSurface(tooth, std::move(zones), root_zone_count);
 }
 
 /// The teeth as made in one round.
 struct Round {
   std::vector<RootSteering> steering;
-  std::vector<SourcedTooth> teeth;
+  std::vector<SourcedTooth> teeth;  // before they are pressed apart
+  PressedTeeth pressed;
   std::vector<double> cost;
   std::vector<bool> at_limit;
   std::map<ToothPair, std::vector<double>> missing;  // per pair of zones, where roots move; of finished teeth
@@ -68,31 +72,37 @@ class Resolving {
     now_.teeth = teeth;
     now_.cost.assign(teeth.size(), 0);
     now_.at_limit.assign(teeth.size(), false);
+    for (const SourcedTooth& tooth : teeth) now_.pressed.meshes.push_back(tooth.mesh);
+    now_.pressed.largest_mm.assign(teeth.size(), 0);
     zoned_.resize(teeth.size());
-    plain_.resize(teeth.size());
-    for (std::size_t i = 0; i < teeth.size(); ++i)
-      plain_[i] = std::make_shared<SolidSurface>(tooth_surface(teeth[i].mesh, teeth[i].source));
   }
 
   ResolvedCollisions run() {
     ResolvedCollisions resolved;
     Round best = now_;
-    if (any_too_near()) {
+    if (!too_near().empty()) {
+      press();
+      press_trials();
       measure();
       best = now_;
       std::map<ToothPair, double> extra;
       for (int round = 0; round < options_.rounds; ++round) {
         const FoundSteering found = find_least_steering(roots_, options_.search, extra);
         const bool all_made = make(found, resolved.notes);
+        press();
         measure();
-        if (now_.all_missing(wanted()) < best.all_missing(wanted()) - enough) best = now_;
-        if (all_made && !ask_for_more(found, extra)) break;
+        const double before = best.all_missing(wanted()), after = now_.all_missing(wanted());
+        if (after < before - enough) best = now_;
+        // Rounds that help are worth their time; a tooth that could not be made is worth another.
+        if (all_made && (after > hardly_less * before || !ask_for_more(found, extra))) break;
       }
     }
     now_ = std::move(best);
     resolved.unresolved = unresolved();
     resolved.steering = std::move(now_.steering);
     resolved.teeth = std::move(now_.teeth);
+    for (std::size_t i = 0; i < resolved.teeth.size(); ++i) resolved.teeth[i].mesh = std::move(now_.pressed.meshes[i]);
+    resolved.pressed_mm = std::move(now_.pressed.largest_mm);
     resolved.cost_mm = std::move(now_.cost);
     return resolved;
   }
@@ -101,7 +111,11 @@ class Resolving {
   double wanted() const { return options_.search.clearance; }
 
   /// The smallest clearances of roots that are less than wanted.
-  std::map<ToothPair, double> too_near(const std::vector<std::shared_ptr<const SolidSurface>>& teeth) const {
+  std::map<ToothPair, double> too_near() const {
+    std::vector<std::unique_ptr<const SolidSurface>> teeth(now_.teeth.size());
+    parallel_tasks(teeth.size(), [&](std::size_t i) {
+      teeth[i] = std::make_unique<SolidSurface>(tooth_surface(now_.pressed.meshes[i], now_.teeth[i].source));
+    });
     std::vector<const SolidSurface*> surfaces;
     for (const auto& tooth : teeth) surfaces.push_back(tooth.get());
     NeighbourOptions near;
@@ -113,7 +127,42 @@ class Resolving {
     return found;
   }
 
-  bool any_too_near() const { return !too_near(plain_).empty(); }
+  void press() {
+    std::vector<JoinedTooth> joined(now_.teeth.size());
+    for (std::size_t i = 0; i < joined.size(); ++i) {
+      const SourcedTooth& tooth = now_.teeth[i];
+      joined[i].mesh = tooth.mesh;
+      joined[i].crown_vertices = tooth.scanned_vertices;
+      joined[i].crown_triangles = tooth.scanned_triangles;
+    }
+    PressedTeeth pressed = press_apart(joined, options_.press);
+    for (std::size_t i = 0; i < joined.size(); ++i)
+      if (pressed.meshes[i].vertices != now_.pressed.meshes[i].vertices) zoned_[i] = nullptr;
+    now_.pressed = std::move(pressed);
+  }
+
+  /// The trial teeth give way, too, where turning moves them little: else roots would be turned as far as they may for
+  /// what pressing does better. What lies farther down shall turn out of the other's way.
+  void press_trials() {
+    for (std::size_t i = 0; i < roots_.size(); ++i) {
+      SteerableRoot& root = roots_[i];
+      // A tooth that its user steered has other triangles than its trial.
+      if (now_.pressed.largest_mm[i] == 0 || root.start.any() || now_.teeth[i].mesh.triangles != root.triangles)
+        continue;
+      std::vector<Eigen::Vector3d> moves(now_.teeth[i].mesh.vertices.size());
+      for (std::size_t v = 0; v < moves.size(); ++v)
+        moves[v] = now_.pressed.meshes[i].vertices[v] - now_.teeth[i].mesh.vertices[v];
+      const std::vector<int> zones = root_zones(root);
+      for (std::size_t t = 0; t < zones.size(); ++t)
+        if (zones[t] > static_cast<int>(RootZone::upper))
+          for (const int v : root.triangles[t]) moves[at(v)].setZero();
+      root.vertices = [unpressed = root.vertices, moves = std::move(moves)](const RootSteering& steering) {
+        std::vector<Point> vertices = unpressed(steering);
+        for (std::size_t v = 0; v < vertices.size(); ++v) vertices[v] += moves[v];
+        return vertices;
+      };
+    }
+  }
 
   /// Makes the teeth whose steering is another one. False if one could not be made: it stays as it is from now on.
   bool make(const FoundSteering& found, std::vector<std::string>& notes) {
@@ -122,7 +171,8 @@ class Resolving {
       if (same(found.steering[i], now_.steering[i])) continue;
       try {
         SourcedTooth tooth = finish_(i, found.steering[i]);
-        plain_[i] = std::make_shared<SolidSurface>(tooth_surface(tooth.mesh, tooth.source));
+        // Until it is pressed.
+        now_.pressed.meshes[i] = tooth.mesh;
         now_.teeth[i] = std::move(tooth);
         now_.steering[i] = found.steering[i];
         now_.cost[i] = found.cost_mm[i];
@@ -145,7 +195,8 @@ class Resolving {
       if (zoned_[i]) continue;
       TriangleMesh trial;
       if (roots_[i].may_change) trial = {roots_[i].vertices(now_.steering[i]), roots_[i].triangles};
-      zoned_[i] = std::make_shared<SolidSurface>(in_zones(now_.teeth[i], trial, root_zones(roots_[i])));
+      zoned_[i] = std::make_shared<SolidSurface>(
+          in_zones(now_.pressed.meshes[i], now_.teeth[i].source, trial, root_zones(roots_[i])));
     }
     now_.missing.clear();
     for (std::size_t i = 0; i < roots_.size(); ++i)
@@ -173,11 +224,8 @@ class Resolving {
   }
 
   std::vector<UnresolvedCollision> unresolved() const {
-    std::vector<std::shared_ptr<const SolidSurface>> teeth;
-    for (const SourcedTooth& tooth : now_.teeth)
-      teeth.push_back(std::make_shared<SolidSurface>(tooth_surface(tooth.mesh, tooth.source)));
     std::vector<UnresolvedCollision> all;
-    for (const auto& [pair, mm] : too_near(teeth)) {
+    for (const auto& [pair, mm] : too_near()) {
       const auto [i, j] = pair;
       const bool fixed_i = !roots_[i].may_change, fixed_j = !roots_[j].may_change;
       CollisionCause cause = CollisionCause::out_of_proportion;
@@ -212,7 +260,7 @@ class Resolving {
   const FinishTooth& finish_;
   ResolveOptions options_;
   Round now_;
-  std::vector<std::shared_ptr<const SolidSurface>> plain_, zoned_;
+  std::vector<std::shared_ptr<const SolidSurface>> zoned_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "arch/clearance.hpp"
+#include "arch/press_apart.hpp"
 #include "arch/steerable_root.hpp"
 #include "arch/steering_search.hpp"
 #include "rhizodont/io.hpp"
@@ -22,6 +23,8 @@ namespace rhizodont {
 struct SourcedTooth {
   TriangleMesh mesh;                 ///< mm; a closed solid
   std::vector<VertexSource> source;  ///< per vertex
+  /// So many vertices and triangles, the first ones, are as scanned and never move. If 0 the tooth is pressed nowhere.
+  int scanned_vertices = 0, scanned_triangles = 0;
 };
 
 /// Makes tooth `number` anew with the root so steered. May throw an Error where that gives no tooth: it then keeps the
@@ -31,6 +34,7 @@ using FinishTooth = std::function<SourcedTooth(std::size_t number, const RootSte
 struct ResolveOptions {
   SteeringSearchOptions search;
   int rounds = 4;  ///< >= 1: at most so often teeth are made with what the search on trial teeth has found
+  PressOptions press;
 };
 
 /// Why roots stay nearer to each other than asked for.
@@ -50,8 +54,9 @@ struct UnresolvedCollision {
 
 struct ResolvedCollisions {
   std::vector<RootSteering> steering;  ///< per tooth; `start`, bit for bit, of one that was not changed
-  std::vector<SourcedTooth> teeth;     ///< so steered; as given where nothing was changed
+  std::vector<SourcedTooth> teeth;     ///< so steered and pressed; as given where nothing was changed
   std::vector<double> cost_mm;         ///< per tooth: `FoundSteering::cost_mm`
+  std::vector<double> pressed_mm;      ///< per tooth: `PressedTeeth::largest_mm`
   std::vector<UnresolvedCollision> unresolved;
   std::vector<std::string> notes;  ///< sentences on teeth that could not be made as wished
 };
@@ -59,7 +64,8 @@ struct ResolvedCollisions {
 /// Steers roots so that each keeps `options.search.clearance` from the roots and crowns of other teeth, by the least
 /// change (`SteeringSearchOptions`); crowns never move, and teeth that stand apart stay as they are. The change is
 /// searched on trial teeth; those concerned are made with it and measured, and what they lack is asked for in addition
-/// the next time. Of all rounds the one is taken that lacks least.
+/// the next time. Of all rounds the one is taken that lacks least. What then still lies in each other is pressed apart
+/// (`press_apart`).
 ///
 /// @param roots   of all teeth, for trials
 /// @param teeth   the same teeth as they are now, made with `start`

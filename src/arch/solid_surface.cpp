@@ -102,6 +102,14 @@ Corners SolidSurface::corners(int triangle) const {
   return {mesh_.vertices[at(a)], mesh_.vertices[at(b)], mesh_.vertices[at(c)]};
 }
 
+std::array<double, 3> SolidSurface::barycentric(int triangle, const Point& p) const {
+  const auto [a, b, c] = corners(triangle);
+  const Eigen::Vector3d normal = (b - a).cross(c - a);
+  const double area = normal.squaredNorm();
+  const double of_a = (c - b).cross(p - b).dot(normal) / area, of_b = (a - c).cross(p - c).dot(normal) / area;
+  return {of_a, of_b, 1 - of_a - of_b};
+}
+
 /// Not of unit length: of the triangle, edge or vertex that is nearest to p.
 Eigen::Vector3d SolidSurface::normal_at(int triangle, const Point& p) const {
   const auto [a, b, c] = corners(triangle);

@@ -6,6 +6,7 @@
 #include "mesh/box_tree.hpp"
 #include "rhizodont/mesh.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -40,6 +41,8 @@ class SolidSurface {
   /// Bits of the parts that vertex v is a corner of.
   std::uint32_t parts_of_vertex(std::size_t v) const { return parts_of_vertex_[v]; }
   Corners corners(int triangle) const;
+  /// What each corner counts in a point of the triangle's plane; they add to 1.
+  std::array<double, 3> barycentric(int triangle, const Point& p) const;
   const ClosedBox& box() const { return box_; }
 
   /// The signed distance of a point (finite) from the surface; nothing for a point outside that is not nearer than

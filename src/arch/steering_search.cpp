@@ -350,12 +350,9 @@ class Search {
   /// How much the point of a triangle moves along a direction, if its corners move so.
   static double rate_at(const SolidSurface& tooth, int triangle, const Point& p, const Eigen::Vector3d& along,
                         const std::vector<Eigen::Vector3d>& rates) {
-    const auto [a, b, c] = tooth.corners(triangle);
-    const Eigen::Vector3d normal = (b - a).cross(c - a);
-    const double area = normal.squaredNorm();
-    const double of_a = (c - b).cross(p - b).dot(normal) / area, of_b = (a - c).cross(p - c).dot(normal) / area;
+    const std::array<double, 3> shares = tooth.barycentric(triangle, p);
     const Triangle& t = tooth.mesh().triangles[at(triangle)];
-    return along.dot(of_a * rates[at(t[0])] + of_b * rates[at(t[1])] + (1 - of_a - of_b) * rates[at(t[2])]);
+    return along.dot(shares[0] * rates[at(t[0])] + shares[1] * rates[at(t[1])] + shares[2] * rates[at(t[2])]);
   }
 
   /// The least change that would do if clearances went on as they do here.

@@ -46,8 +46,6 @@ inline constexpr int root_zone_count = 5;
 /// The zone of each triangle. All of a root that cannot be steered is neck.
 std::vector<int> root_zones(const SteerableRoot& root);
 
-using ToothPair = std::pair<std::size_t, std::size_t>;  ///< numbers of teeth, lower first
-
 /// What two teeth lack, zone by zone, where a root can do something about it. Each made with `root_zones`.
 /// @param wanted  mm
 /// @return mm, >= 0, per pair of zones as in `part_clearances`; 0 where neither moves

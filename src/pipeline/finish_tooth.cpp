@@ -4,6 +4,7 @@
 // "Completing Dental Models While Preserving Crown Geometry and Meshing Topology", figure 1: the order of the stages,
 // from the guiding surface on.
 
+#include "base/float_bits.hpp"
 #include "completion/steering.hpp"
 #include "completion/uncertainty.hpp"
 #include "fusion/fuse.hpp"
@@ -12,6 +13,7 @@
 #include "mesh/closest_point.hpp"
 #include "mesh/geometry.hpp"
 #include "pipeline/missed_promise.hpp"
+#include "pipeline/moved_tooth.hpp"
 #include "pipeline/prepared_tooth.hpp"
 #include "pipeline/report_parts.hpp"
 #include "pipeline/stage_clock.hpp"
@@ -98,6 +100,14 @@ CheckReport evidence(const TriangleMesh& input, const TriangleMesh& tooth, const
   return check(input, tooth, options);
 }
 
+/// Throws NoResultError where they are not kept.
+void require_promises(const CheckReport& promises) {
+  if (promises.holds()) return;
+  std::string sentence = "No tooth was found that keeps the promises:";
+  for (const std::string& failure : promises.failures) sentence += " " + failure;
+  throw NoResultError(sentence);
+}
+
 /// Brings the tooth back to where the input is, with evidence for the promises. Far from the origin floats lie so wide
 /// apart that new triangles may come to cross each other: then the new vertices keep all their digits.
 void put_in_place(const TriangleMesh& fused, const TriangleMesh& input, const std::vector<int>& kept, Workplace place,
@@ -113,10 +123,7 @@ void put_in_place(const TriangleMesh& fused, const TriangleMesh& input, const st
         "The crown lies so far from the origin that single precision is too coarse for new triangles: new vertices "
         "have double precision. Move the scan to the origin for STL.");
   }
-  if (record.promises.holds()) return;
-  std::string sentence = "No tooth was found that keeps the promises:";
-  for (const std::string& failure : record.promises.failures) sentence += " " + failure;
-  throw NoResultError(sentence);
+  require_promises(record.promises);
 }
 
 /// Numbers of those that are `kept` of the input, in the input's order.
@@ -217,6 +224,33 @@ CompletedTooth finished_tooth(const PreparedTooth::Content& content, const RootS
     tooth.record.stages.insert(tooth.record.stages.end(), stages.begin(), stages.end());
     return std::move(tooth);
   });
+}
+
+CompletedTooth moved_tooth(const TriangleMesh& crown, CompletedTooth tooth, const std::vector<Point>& vertices) {
+  if (vertices.size() != tooth.mesh.vertices.size())
+    throw UsageError(fmt::format("{} places are given for {} vertices.", vertices.size(), tooth.mesh.vertices.size()));
+  CompletionRecord& record = tooth.record;
+  const double unit = record.millimetres_per_unit;
+  const bool as_float = coordinates_fit_float(tooth.mesh);
+  const auto lowest = [&] { return unit * extent_along(tooth.mesh.vertices, record.frame.growth_axis).first; };
+  const double before = lowest();
+  for (std::size_t v = record.crown.kept_vertices.size(); v < vertices.size(); ++v) {
+    // What stays keeps its bits in any unit.
+    if (vertices[v] == unit * tooth.mesh.vertices[v]) continue;
+    const Point place = vertices[v] / unit;
+    tooth.mesh.vertices[v] = as_float ? nearest_float(place) : place;
+  }
+  const double longer = before - lowest();
+  record.root.length_mm += longer;
+  record.root.tooth_length_mm += longer;
+  if (record.root.interval)
+    for (double* mm : {&record.root.interval->length_low_mm, &record.root.interval->length_high_mm}) *mm += longer;
+  record.promises = evidence(crown, tooth.mesh, record);
+  require_promises(record.promises);
+  record.missed_places = where_promise_three_is_missed(tooth.mesh, record.crown.kept_vertices,
+                                                       static_cast<std::size_t>(record.crown.kept_triangles),
+                                                       record.promises.new_triangles);
+  return tooth;
 }
 
 CompletedTooth finish_tooth(const PreparedTooth& prepared, const RootSteering& steering,
