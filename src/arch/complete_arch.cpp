@@ -193,13 +193,15 @@ void warn_of_loss(CompletionRecord& record) {
                     crown.kept_triangles, crown.triangles));
 }
 
-/// The first attempt that gives a tooth. Throws as the first one where none does, or says that it would not stand in
-/// the arch: what is left of a crown may be hung on its border anyhow, upside down too, and its neighbours know better.
+/// The first attempt that gives a tooth. Where none does, throws as the first one, or as the first that finds fault with
+/// the crown itself, for that tells more than what came of it; or says that the tooth would not stand in the arch: what
+/// is left of a crown may be hung on its border anyhow, upside down too, and its neighbours know better.
 MadeTooth complete_one(const TriangleMesh& crown, const std::vector<Attempt>& attempts,
                        const CompletionModels& models) {
   const std::optional<ToothDirections>& place = attempts.front().options.directions;
   constexpr double most_off = 60;  // degrees; borders of real scans lean by up to 40
   std::exception_ptr refused;
+  bool is_of_crown = false;
   for (const Attempt& attempt : attempts) {
     try {
       const PreparedTooth prepared = prepare_tooth(crown, models, attempt.options);
@@ -217,6 +219,11 @@ MadeTooth complete_one(const TriangleMesh& crown, const std::vector<Attempt>& at
       return {prepared, std::move(tooth), ""};
     } catch (const UsageError&) {
       throw;
+    } catch (const InputError&) {
+      // What is said of a crown with its gum is no fault of the crown.
+      const bool tells_more = attempt.options.skirt && !is_of_crown;
+      if (!refused || tells_more) refused = std::current_exception();
+      is_of_crown |= attempt.options.skirt.has_value();
     } catch (const Error&) {
       if (!refused) refused = std::current_exception();
     }
