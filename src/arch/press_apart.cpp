@@ -214,7 +214,8 @@ class Pressing {
           before.vertices[at(free[k])].transpose() + step * (displacements.row(row) / step).array().round().matrix();
     }
     SafelyMoved moved = move_safely(teeth_[i], free, targets);
-    return moved.cuts_itself ? pressed_.meshes[i] : std::move(moved.mesh);
+    if (moved.cuts_itself) return pressed_.meshes[i];
+    return std::move(moved.mesh);
   }
 
   const std::vector<JoinedTooth>& teeth_;

@@ -116,8 +116,8 @@ class Resolving {
     parallel_tasks(teeth.size(), [&](std::size_t i) {
       teeth[i] = std::make_unique<SolidSurface>(tooth_surface(now_.pressed.meshes[i], now_.teeth[i].source));
     });
-    std::vector<const SolidSurface*> surfaces;
-    for (const auto& tooth : teeth) surfaces.push_back(tooth.get());
+    std::vector<const SolidSurface*> surfaces(teeth.size());
+    std::transform(teeth.begin(), teeth.end(), surfaces.begin(), [](const auto& tooth) { return tooth.get(); });
     NeighbourOptions near;
     near.within = wanted() + enough;
     std::map<ToothPair, double> found;
