@@ -41,7 +41,7 @@ class CompletionNetwork {
 
   /// Completes a crown. `crown`: distinct points spread over the crown's surface in the canonical pose, in any order,
   /// at least `input_points()` of them; more are thinned by farthest-point sampling. `type` is 0..15 or `unknown_type`;
-  /// `form_axis`: x and y of the axis of the crown's form, where z is that of its border (as in training).
+  /// `form_axis`: x and y of the axis of the crown's form, where z is that of its border (`CrownFrame::form_axis`).
   /// The result depends neither on the order of the points nor on the number of threads.
   /// Throws InputError for an axis that is not a number and for too few, non-finite or coinciding points or points far
   /// outside of the pose's cube (|x| > 4), UsageError for another type, NoResultError where what comes out is no

@@ -139,6 +139,20 @@ TEST(CanonicalFrameOfCrowns, axisOfTheFormStaysWhereTheBorderLeans) {
   EXPECT_LT(image / 20, 0.05);
 }
 
+TEST(CanonicalFrameOfCrowns, anArchsDirectionsLeaveHalfOfTheFormsLean) {
+  for (const Sample& sample : samples) {
+    const TriangleMesh crown = sample_crown(sample);
+    const CanonicalFrame whole = canonical_frame(prepare_crown(crown), sample.fdi, mean_of(sample.fdi)).frame;
+    const PreparedCrown part = prepare_crown(cut(crown, whole, 5.2, 1, 0.2));
+    const CrownFrame alone = canonical_frame(part, sample.fdi, mean_of(sample.fdi));
+    // The arch tells what the crown was laid by before, so that nothing else changes.
+    const ToothDirections directions{part.growth_axis, alone.frame.direction_to_world(Eigen::Vector3d::UnitY())};
+    const CrownFrame told = canonical_frame(part, sample.fdi, mean_of(sample.fdi), {}, directions);
+    ASSERT_GT(alone.form_axis.norm(), 0.02) << sample.fdi;
+    EXPECT_LT((told.form_axis - alone.form_axis / 2).norm(), 0.1 * alone.form_axis.norm()) << sample.fdi;
+  }
+}
+
 TEST(CanonicalFrameOfCrowns, isTheSameForAnyNumberOfThreads) {
   const TriangleMesh crown = sample_crown(samples[3]);
   const TypeGuess many = guess_fdi_type(prepare_crown(crown), atlas());
