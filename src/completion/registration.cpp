@@ -126,12 +126,12 @@ Registered register_cloud(const OrientedCloud& crown, const OrientedCloud& mean,
   const OrientedCloud coarse_crown = thinned(crown, 128), coarse_mean = thinned(mean, 128);
   const OrientedCloud fine_crown = thinned(crown, 256), fine_mean = thinned(mean, 256);
   const CloudFeatures coarse_goal = features_of(coarse_mean, options.normal_weight_mm);
-  std::vector<std::pair<double, std::size_t>> starts;
-  for (std::size_t r = 0; r < rotations.size(); ++r) {
+  std::vector<std::pair<double, std::size_t>> starts(rotations.size());
+  parallel_tasks(rotations.size(), [&](std::size_t r) {
     const Similarity start = start_with(rotations[r], coarse_crown, coarse_mean);
     const CloudFeatures features = features_of(moved(coarse_crown, start), options.normal_weight_mm);
-    starts.emplace_back(two_way_distance(features, coarse_goal, trim), r);
-  }
+    starts[r] = {two_way_distance(features, coarse_goal, trim), r};
+  });
   std::sort(starts.begin(), starts.end());
   std::vector<Eigen::Matrix3d> chosen;
   for (const auto& start : starts) {
@@ -143,15 +143,17 @@ Registered register_cloud(const OrientedCloud& crown, const OrientedCloud& mean,
     if (is_new) chosen.push_back(rotations[r]);
     if (static_cast<int>(chosen.size()) == options.refined_starts) break;
   }
-  Registered best;
   const CloudFeatures goal = features_of(mean, options.normal_weight_mm);
-  for (const Eigen::Matrix3d& rotation : chosen) {
-    Similarity at = start_with(rotation, fine_crown, fine_mean);
+  std::vector<Registered> refined_starts(chosen.size());
+  parallel_tasks(chosen.size(), [&](std::size_t k) {
+    Similarity at = start_with(chosen[k], fine_crown, fine_mean);
     at = refined(fine_crown, fine_mean, at, options, trim, options.iterations);
     const CloudFeatures features = features_of(moved(crown, at), options.normal_weight_mm);
-    const double residual = two_way_distance(features, goal, trim);
-    if (residual < best.residual) best = {at, residual};
-  }
+    refined_starts[k] = {at, two_way_distance(features, goal, trim)};
+  });
+  Registered best;
+  for (const Registered& found : refined_starts)
+    if (found.residual < best.residual) best = found;
   best.at = refined(crown, mean, best.at, options, trim, 3);
   best.residual = two_way_distance(features_of(moved(crown, best.at), options.normal_weight_mm), goal, trim);
   return best;
