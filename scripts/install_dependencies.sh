@@ -17,7 +17,7 @@ case ${1:-all} in
   program) ;;
   all)
     packages+=(
-      chromium fonts-dejavu-core clang-format clang-tidy libgtest-dev libtorch-dev libgloo-dev libopenblas0-openmp
+      chromium fonts-dejavu-core clang-format clang-tidy libgtest-dev libbenchmark-dev valgrind libtorch-dev libgloo-dev libopenblas0-openmp
       python3-numpy python3-scipy python3-open3d python3-jsonschema python3-dev pybind11-dev python3-pytest python3-pip python3-venv mypy
       man-db zsh fish appstream
       slurmctld slurmd slurm-client munge
