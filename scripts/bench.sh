@@ -55,6 +55,24 @@ if [ -x build/bench/networks/bench_networks ]; then
 else
   printf '\n## Networks beside torch\n\nNot measured: this build has no torch (RHIZODONT_TRAINING).\n'
 fi
+# Two teeth's stages beside each other, wall-clock and processor time in ms, from Google Benchmark's CSV
+stage_times() {
+  build/bench/stages/bench_stages --benchmark_format=csv 2> /dev/null | awk -F, '
+    /^"/ { gsub(/"/, "", $1); split($1, name, "/"); stage = name[1]; tooth = name[2]
+           if (!(stage in seen)) { seen[stage] = 1; order[++n] = stage }
+           if (!(tooth in teeth)) { teeth[tooth] = 1; column[++m] = tooth }
+           wall[stage, tooth] = $3; processor[stage, tooth] = $4 }
+    END { printf "| stage |"; for (j = 1; j <= m; j++) printf " tooth %s, ms | processor, ms |", column[j]
+          printf "\n|---|"; for (j = 1; j <= m; j++) printf "---|---|"
+          for (i = 1; i <= n; i++) { printf "\n| %s |", order[i]
+            for (j = 1; j <= m; j++) printf " %.1f | %.1f |", wall[order[i], column[j]], processor[order[i], column[j]] }
+          print "" }'
+}
+if [ -x build/bench/stages/bench_stages ]; then
+  run "Each stage by itself, samples 36 and 23, e = 0.5 mm: what build/bench/stages/bench_stages measures" stage_times
+else
+  printf '\n## Each stage by itself\n\nNot measured: Google Benchmark was not there (libbenchmark-dev).\n'
+fi
 run "Whole tooth: growth with the crown and with 1/e^2, peak memory" \
   build/bench/pipeline/bench_pipeline "$scratch/growth.csv" 5000 10000 20000 50000 100000
 /usr/bin/python3 bench/pipeline/plot_growth.py "$scratch/growth.csv" docs/growth.svg

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: Rhizodont contributors
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Completes bad crowns by the thousand: hostile_crowns.py [COUNT=10000] [--out FOLDER] [--minutes M] [--jobs N] [--build FOLDER]
+"""Completes bad crowns by the thousand: hostile_crowns.py [COUNT=10000] [--first 0] [--out FOLDER] [--minutes M] [--jobs N] [--build FOLDER]
 
 Crown number n is always the same: its kind of defect, seed, sample, size (most up to 1,500 vertices, one in 20 to 10,000, one
 in 250 to 60,000, one in 2,500 of 500,000), fineness and whether it is repaired follow from n. Each tooth that is made is proved
 in the same process with the project's own check, exactly and as a user checks it. Outcomes are appended to FOLDER/outcomes.tsv
 (results/hostile), so that a run that was stopped, also by --minutes, goes on where it was; --table prints the table alone.
+--first leaves out the numbers below it, so that several machines may share the work: their outcomes.tsv put together are one run.
 
 Ends with 1 if a crown crashed the program, needed more than 60 s of processor time, ended in an exception that is no refusal, or
 became a tooth that breaks a promise. Needs the target complete_hostile_crowns (scripts/test.sh). hostile_crowns.sh does the same
@@ -109,7 +110,7 @@ def read_outcomes(path):
 
 def run(arguments, path, build):
     done, kinds = read_outcomes(path), kinds_of(build)
-    left = iter([n for n in range(arguments.count) if n not in done])
+    left = iter([n for n in range(arguments.first, arguments.count) if n not in done])
     until = time.monotonic() + 60 * arguments.minutes if arguments.minutes else None
     lock = threading.Lock()
 
@@ -175,6 +176,7 @@ def tables(rows):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('count', nargs='?', type=int, default=10_000)
+    parser.add_argument('--first', type=int, default=0)
     parser.add_argument('--out', type=pathlib.Path, default=SOURCE / 'results/hostile')
     parser.add_argument('--build', type=pathlib.Path, default=SOURCE / 'build')
     parser.add_argument('--minutes', type=float)
