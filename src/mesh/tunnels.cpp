@@ -158,7 +158,7 @@ class LoopFinder {
 }  // namespace
 
 std::vector<int> short_handle_loop(const TriangleMesh& mesh) {
-  assert(diagnose(mesh).is_oriented_manifold());
+  assert(mesh.triangles.empty() || diagnose(mesh).is_oriented_manifold());
   if (mesh.triangles.empty() || handle_count(mesh) <= 0) return {};
   constexpr std::size_t followed = 3;  // loops of the first basis
   constexpr std::size_t starts = 4;    // places on each
