@@ -64,8 +64,6 @@ export TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1:exitcode=66
 run=()
 if [ "$sanitizers" = thread ]; then
   export LD_LIBRARY_PATH="$build/tbb" OMP_NUM_THREADS=1
-  # It keeps signals back while a call waits: processes that are to be ended in the midst of one would wait for ever.
-  export GTEST_FILTER=-InterruptedWriting.*
   # ThreadSanitizer does not know as widely strewn addresses as newer kernels give.
   run=(setarch "$(uname -m)" -R)
 fi

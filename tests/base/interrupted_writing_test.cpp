@@ -64,7 +64,12 @@ Stepped run_with_signal(const std::function<void()>& work, int signal, int step)
 
 class InterruptedWriting : public ::testing::Test {
  protected:
-  InterruptedWriting() { start_anew(); }
+  // In the background of a script, and with nohup, a program is started with these signals ignored; then they end
+  // nothing.
+  InterruptedWriting() {
+    for (const int number : {SIGHUP, SIGINT, SIGQUIT}) std::signal(number, SIG_DFL);
+    start_anew();
+  }
 
   void start_anew() const {
     fs::remove_all(folder.path() / "results");
