@@ -110,7 +110,12 @@ TEST_F(InterruptedWriting, AnySignalAtAnyStepLeavesAllOfTheOlderOrAllOfTheNew) {
       }
       ++(after == older ? unchanged : written);
     }
-    EXPECT_LE(exits, 1);
+#ifdef __SANITIZE_ADDRESS__
+    constexpr int last_calls = 2;  // the sanitizer makes one more
+#else
+    constexpr int last_calls = 1;
+#endif
+    EXPECT_LE(exits, last_calls);
     EXPECT_GT(step, 100);
     EXPECT_GT(unchanged, 5);
     EXPECT_GT(written, 5);
