@@ -10,7 +10,7 @@ formats and made a page of, and one crown in 25 has to be refused first. Every 2
 sizes are read: what the process holds in memory (RSS), and what of its heap is in use (mallinfo2).
 
 The rule, on readings after tooth 100: of those of the last fifth the lowest RSS is at most 2 % above the lowest of the first fifth, and the
-highest 5 % above the highest (the two, not a mean: the heap gives back its top or keeps it by chance, 20 MB, and a leak raises
+highest 5 % above the highest (the two, not a mean: RSS goes to and fro between two levels, and a leak raises
 both); between the fifths' medians the heap in use grows by at most 0.5 KB per tooth. Prints a row of a table in Markdown; --document writes it and the plot into
 docs/faults.md and docs/soak.svg. Ends with 1 if the rule does not hold or a tooth ends otherwise than it should."""
 
