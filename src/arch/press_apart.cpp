@@ -210,8 +210,10 @@ class Pressing {
     Eigen::MatrixXd targets(displacements.rows(), 3);
     for (std::size_t k = 0; k < free.size(); ++k) {
       const auto row = static_cast<Eigen::Index>(k);
-      targets.row(row) =
-          before.vertices[at(free[k])].transpose() + step * (displacements.row(row) / step).array().round().matrix();
+      Eigen::RowVector3d way = displacements.row(row);
+      // Between wishes the smooth surface may go beyond them; less a step, for ways are rounded.
+      if (const double longest = options_.most - step; way.norm() > longest) way *= longest / way.norm();
+      targets.row(row) = before.vertices[at(free[k])].transpose() + step * (way / step).array().round().matrix();
     }
     SafelyMoved moved = move_safely(teeth_[i], free, targets);
     if (moved.cuts_itself) return pressed_.meshes[i];

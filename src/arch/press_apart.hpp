@@ -34,7 +34,7 @@ struct PressedTeeth {
 /// never move. Teeth that touch nobody stay as they are, bit for bit; what is deeper than `most` stays partly.
 ///
 /// @param teeth  mm; the first crown_vertices and crown_triangles of each as scanned. A tooth without any is left out
-/// Moves are whole multiples of 2^-12 mm, so that sums in another order give the same. The same on any number of
+/// Ways are rounded to 2^-12 mm, so that sums in another order give the same. The same on any number of
 /// threads. Throws UsageError for options out of range, InputError for a tooth that is no closed solid.
 PressedTeeth press_apart(const std::vector<JoinedTooth>& teeth, const PressOptions& options = {});
 
