@@ -193,9 +193,9 @@ void warn_of_loss(CompletionRecord& record) {
                     crown.kept_triangles, crown.triangles));
 }
 
-/// The first attempt that gives a tooth. Where none does, throws as the first one, or as the first that finds fault with
-/// the crown itself, for that tells more than what came of it; or says that the tooth would not stand in the arch: what
-/// is left of a crown may be hung on its border anyhow, upside down too, and its neighbours know better.
+/// The first attempt that gives a tooth. Where none does, throws as the first one, or as the first that finds fault
+/// with the crown itself, for that tells more than what came of it; or says that the tooth would not stand in the arch:
+/// what is left of a crown may be hung on its border anyhow, upside down too, and its neighbours know better.
 MadeTooth complete_one(const TriangleMesh& crown, const std::vector<Attempt>& attempts,
                        const CompletionModels& models) {
   const std::optional<ToothDirections>& place = attempts.front().options.directions;
@@ -377,8 +377,13 @@ TriangleMesh in_millimetres(const CompletedTooth& tooth) {
 }
 
 SourcedTooth sourced(const CompletedTooth& tooth) {
-  return {in_millimetres(tooth), crown_and_root(tooth), static_cast<int>(tooth.record.crown.kept_vertices.size()),
-          tooth.record.crown.kept_triangles};
+  const CompletionRecord& record = tooth.record;
+  return {in_millimetres(tooth),
+          tooth.source,
+          static_cast<int>(record.crown.kept_vertices.size()),
+          record.crown.kept_triangles,
+          record.millimetres_per_unit * lowest_of_crown(tooth),
+          record.frame.growth_axis};
 }
 
 std::optional<double> millimetres(const std::optional<Approach>& approach) {
@@ -407,8 +412,9 @@ void measure_clearances(CompletedArch& arch, bool upper) {
 void press(CompletedArch& arch, ToothOfArch& tooth, const TriangleMesh& pressed, double mm) {
   try {
     tooth.tooth = moved_tooth(tooth.crown, *tooth.tooth, pressed.vertices);
+    mark_contacts(*tooth.tooth);
     tooth.tooth->record.warnings.push_back(
-        fmt::format("Its new surface gave way by up to {:.1f} mm where it lay in a neighbour: the scan does not show "
+        fmt::format("Its new surface gave way by up to {:.2f} mm where it lay in a neighbour: the scan does not show "
                     "what is between them.",
                     mm));
   } catch (const NoResultError& error) {
@@ -465,7 +471,7 @@ void resolve(CompletedArch& arch, const Prepared& prepared, const ArchOptions& o
       keep_warnings(changed.record, tooth.tooth->record);
       tooth.tooth = std::move(changed);
       tooth.tooth->record.warnings.push_back(fmt::format(
-          "The root was changed by {:.1f} mm at its end to keep clear of its neighbours.", resolved.cost_mm[k]));
+          "The root was changed by {:.2f} mm at its end to keep clear of its neighbours.", resolved.cost_mm[k]));
     }
     if (resolved.pressed_mm[k] != 0) press(arch, tooth, resolved.teeth[k].mesh, resolved.pressed_mm[k]);
   }

@@ -27,6 +27,15 @@ bool same(const RootSteering& a, const RootSteering& b) {
          a.bend_degrees == b.bend_degrees;
 }
 
+/// The parts that clearances are told by. Anew wherever a tooth is pressed: vertices go from one to the other.
+std::vector<VertexSource> crown_and_root(const SourcedTooth& tooth, const TriangleMesh& pressed) {
+  std::vector<VertexSource> parts = tooth.source;
+  if (tooth.up.isZero(0)) return parts;
+  for (std::size_t v = 0; v < parts.size(); ++v)
+    if (tooth.up.dot(pressed.vertices[v]) > tooth.root_begins) parts[v] = VertexSource::scan;
+  return parts;
+}
+
 /// A finished tooth in the zones of its trial tooth: each new triangle is where the trial tooth is nearest. `trial`: so
 /// steered; empty of a root that stays as it is, all of which is neck.
 SolidSurface in_zones(const TriangleMesh& tooth, const std::vector<VertexSource>& source, const TriangleMesh& trial,
@@ -79,9 +88,11 @@ class Resolving {
 
   ResolvedCollisions run() {
     ResolvedCollisions resolved;
+    const bool any_too_near = !too_near().empty();
+    // Also where roots stand apart: what closes crowns at their contacts is no root.
+    press();
     Round best = now_;
-    if (!too_near().empty()) {
-      press();
+    if (any_too_near) {
       press_trials();
       measure();
       best = now_;
@@ -114,7 +125,8 @@ class Resolving {
   std::map<ToothPair, double> too_near() const {
     std::vector<std::unique_ptr<const SolidSurface>> teeth(now_.teeth.size());
     parallel_tasks(teeth.size(), [&](std::size_t i) {
-      teeth[i] = std::make_unique<SolidSurface>(tooth_surface(now_.pressed.meshes[i], now_.teeth[i].source));
+      teeth[i] = std::make_unique<SolidSurface>(
+          tooth_surface(now_.pressed.meshes[i], crown_and_root(now_.teeth[i], now_.pressed.meshes[i])));
     });
     std::vector<const SolidSurface*> surfaces(teeth.size());
     std::transform(teeth.begin(), teeth.end(), surfaces.begin(), [](const auto& tooth) { return tooth.get(); });
@@ -195,8 +207,9 @@ class Resolving {
       if (zoned_[i]) continue;
       TriangleMesh trial;
       if (roots_[i].may_change) trial = {roots_[i].vertices(now_.steering[i]), roots_[i].triangles};
+      const TriangleMesh& pressed = now_.pressed.meshes[i];
       zoned_[i] = std::make_shared<SolidSurface>(
-          in_zones(now_.pressed.meshes[i], now_.teeth[i].source, trial, root_zones(roots_[i])));
+          in_zones(pressed, crown_and_root(now_.teeth[i], pressed), trial, root_zones(roots_[i])));
     }
     now_.missing.clear();
     for (std::size_t i = 0; i < roots_.size(); ++i)

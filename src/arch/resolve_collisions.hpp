@@ -12,6 +12,8 @@
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/root_steering.hpp"
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -25,6 +27,9 @@ struct SourcedTooth {
   std::vector<VertexSource> source;  ///< per vertex
   /// So many vertices and triangles, the first ones, are as scanned and never move. If 0 the tooth is pressed nowhere.
   int scanned_vertices = 0, scanned_triangles = 0;
+  /// New vertices above this height along `up` close the crown and count as its; with no direction none do.
+  double root_begins = 0;  ///< mm
+  Eigen::Vector3d up = Eigen::Vector3d::Zero();
 };
 
 /// Makes tooth `number` anew with the root so steered. May throw an Error where that gives no tooth: it then keeps the
@@ -62,10 +67,10 @@ struct ResolvedCollisions {
 };
 
 /// Steers roots so that each keeps `options.search.clearance` from the roots and crowns of other teeth, by the least
-/// change (`SteeringSearchOptions`); crowns never move, and teeth that stand apart stay as they are. The change is
-/// searched on trial teeth; those concerned are made with it and measured, and what they lack is asked for in addition
-/// the next time. Of all rounds the one is taken that lacks least. What then still lies in each other is pressed apart
-/// (`press_apart`).
+/// change (`SteeringSearchOptions`); crowns never move, and teeth that stand apart stay as they are. New surfaces that
+/// lie in each other are pressed apart (`press_apart`), before a change is looked for and whenever teeth are made anew.
+/// The change is searched on trial teeth; those concerned are made with it and measured, and what they lack is asked
+/// for in addition the next time. Of all rounds the one is taken that lacks least.
 ///
 /// @param roots   of all teeth, for trials
 /// @param teeth   the same teeth as they are now, made with `start`

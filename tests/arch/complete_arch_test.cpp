@@ -5,6 +5,7 @@
 #include "arch/arch_memory.hpp"
 #include "common/temporary_folder.hpp"
 #include "mesh/closest_point.hpp"
+#include "pipeline/report_parts.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
@@ -19,6 +20,7 @@
 #include <filesystem>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 namespace rhizodont {
@@ -32,8 +34,8 @@ const CompletionModels& models() {
   return shipped;
 }
 
-/// Some crowns side by side in one scan, with a patch of gum.
-LabelledScan row_of(const std::vector<std::pair<const char*, int>>& crowns) {
+/// Some crowns side by side in one scan, with a patch of gum. `apart`: their middles, mm
+LabelledScan row_of(const std::vector<std::pair<const char*, int>>& crowns, double apart = 14) {
   LabelledScan scan;
   double x = 0;
   for (const auto& [file, fdi] : crowns) {
@@ -47,7 +49,7 @@ LabelledScan row_of(const std::vector<std::pair<const char*, int>>& crowns) {
       scan.mesh.triangles.push_back(t);
     }
     scan.fdi.resize(scan.mesh.vertices.size(), fdi);
-    x += 14;
+    x += apart;
   }
   const auto n = static_cast<std::int32_t>(scan.mesh.vertices.size());
   for (const Point& p : {Point(0, 20, 0), Point(1, 20, 0), Point(0, 21, 0)}) scan.mesh.vertices.push_back(p);
@@ -114,6 +116,32 @@ TEST(CompleteArch, MemoryGivesTheVerySame) {
   options.root_lengths = {};
   options.tooth.e = 0.8;
   expect_same(complete_arch(other, models(), options, {}, memory), complete_arch(other, models(), options));
+}
+
+TEST(CompleteArch, MemoryKeepsTeethAsTheyWereBeforeTheyGaveWay) {
+  const LabelledScan scan = row_of({{"crown_36.stl", 36}, {"crown_34.ply", 34}}, 7.5);
+  ArchMemory memory;
+  ArchOptions options;
+  options.tooth.e = 1;
+  const CompletedArch before = complete_arch(scan, models(), options, {}, memory);
+  options.resolve_collisions = true;
+  const CompletedArch resolved = complete_arch(scan, models(), options, {}, memory);
+  expect_same(resolved, complete_arch(scan, models(), options));
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ToothOfArch& tooth = resolved.teeth[i];
+    ASSERT_TRUE(tooth.tooth && before.teeth[i].tooth) << tooth.fdi << ": " << tooth.refusal;
+    const CompletionRecord& record = tooth.tooth->record;
+    EXPECT_TRUE(std::any_of(record.warnings.begin(), record.warnings.end(), [](const std::string& warning) {
+      return warning.find("gave way") != std::string::npos;
+    })) << tooth.fdi;
+    EXPECT_FALSE(tooth.tooth->mesh.vertices == before.teeth[i].tooth->mesh.vertices);
+    CheckOptions exact;
+    exact.compare_as_float = false;
+    exact.dropped_vertices = vertices_not_of_tooth(record);
+    EXPECT_TRUE(check(tooth.crown, tooth.tooth->mesh, exact).holds());
+  }
+  options.resolve_collisions = false;
+  expect_same(complete_arch(scan, models(), options, {}, memory), before);
 }
 
 TEST(CompleteArch, AToothThatWouldStandUpsideDownIsRefused) {
