@@ -148,6 +148,20 @@ TEST(CompleteTooth, FarFromTheOriginSinglePrecisionStays) {
   }
 }
 
+TEST(CompleteTooth, FarFromTheOriginWhatKeepsNoPromiseIsRefused) {
+  // Doubles are an eighth of a millimetre apart there: the crown still is a surface, but new triangles of a quarter of
+  // a millimetre come to cross each other.
+  TriangleMesh crown = sample("crown_34.ply");
+  for (Point& p : crown.vertices) p += Point(1e15, 1e15, 1e15);
+  try {
+    complete_tooth(crown, models(), for_tooth(34));
+    ADD_FAILURE() << "not refused";
+  } catch (const NoResultError& error) {
+    EXPECT_TRUE(std::string_view(error.what()).starts_with("No tooth was found that keeps the promises: "))
+        << error.what();
+  }
+}
+
 TEST(CompleteTooth, MicrometresFarFromTheOrigin) {
   TriangleMesh crown = sample("crown_34.ply");
   for (Point& p : crown.vertices) p = 1e3 * p + Point(3e6, 0, -4e6);
