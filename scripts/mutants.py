@@ -17,6 +17,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -155,6 +156,9 @@ def main():
     parser.add_argument("--here", action="store_true")
     parser.add_argument("--list", action="store_true")
     options = parser.parse_args()
+    # A shell in the background hands on ignored signals, which tests send.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGQUIT, signal.SIG_DFL)
     mutants = read_mutants()
     wrong = what_is_wrong(mutants)
     for sentence in wrong:
