@@ -174,6 +174,31 @@ TEST(Check, AFlippedEdgeInTheCrownIsBroken) {
   expect_failure(report, "2 triangles of the crown are not in the tooth although all their vertices are");
 }
 
+TEST(Check, NewTrianglesAtTheCrownAndBelowAreToldApart) {
+  Pair pair = good_pair();
+  const std::vector<int>& crown = pair.part.old_vertices;
+  const auto is_of_crown = [&](int v) { return std::find(crown.begin(), crown.end(), v) != crown.end(); };
+  std::size_t at_border = 0;
+  for (const Triangle& t : pair.tooth.triangles)
+    at_border += std::any_of(t.begin(), t.end(), is_of_crown) && !std::all_of(t.begin(), t.end(), is_of_crown);
+  ASSERT_GT(at_border, 10U);
+  // A needle at the lowest vertex, far from the crown.
+  const auto lowest = std::min_element(pair.tooth.vertices.begin(), pair.tooth.vertices.end(),
+                                       [](const Point& a, const Point& b) { return a.z() < b.z(); }) -
+                      pair.tooth.vertices.begin();
+  const Triangle at_lowest = *std::find_if(pair.tooth.triangles.begin(), pair.tooth.triangles.end(),
+                                           [&](const Triangle& t) { return t[0] == lowest || t[1] == lowest; });
+  const Point& other = pair.tooth.vertices[static_cast<std::size_t>(at_lowest[2])];
+  Point& needle = pair.tooth.vertices[static_cast<std::size_t>(lowest)];
+  needle += 0.9 * (other - needle);
+  const NewTriangleFigures figures = check(pair.crown, pair.tooth).new_triangles;
+  ASSERT_TRUE(figures.all && figures.inner && figures.at_border);
+  EXPECT_EQ(figures.at_border->triangles, at_border);
+  EXPECT_EQ(figures.inner->triangles + figures.at_border->triangles, figures.all->triangles);
+  EXPECT_LT(figures.inner->theta_min, 10);
+  EXPECT_GT(figures.at_border->theta_min, 30);
+}
+
 TEST(Check, AMirroredTriangleIsBroken) {
   Pair pair = good_pair();
   Triangle& t = pair.tooth.triangles[static_cast<std::size_t>(pair.part.old_triangles[7])];

@@ -125,6 +125,14 @@ TEST(Quality, CountsAnglesBelow30) {
   EXPECT_NEAR(quality(mesh, {false, true})->theta_min, 45, 1e-12);
 }
 
+TEST(Quality, ThirtyDegreesAreTheBound) {
+  const auto isosceles = [](double degrees) {
+    return one_triangle({0, 0, 0}, {2, 0, 0}, {1, std::tan(degrees * pi / 180), 0});
+  };
+  EXPECT_NEAR(quality(isosceles(29.9))->percent_below_30, 100.0 * 2 / 3, 1e-12);
+  EXPECT_EQ(quality(isosceles(30.1))->percent_below_30, 0);
+}
+
 TEST(Quality, DegenerateIsZeroAndEmptyHasNoFigures) {
   EXPECT_EQ(triangle_quality(one_triangle({1, 1, 1}, {1, 1, 1}, {1, 1, 1}), 0), 0);
   EXPECT_EQ(triangle_quality(one_triangle({0, 0, 0}, {1, 0, 0}, {3, 0, 0}), 0), 0);
