@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include <limits>
+#include <string_view>
 
 namespace rhizodont {
 namespace {
@@ -41,6 +42,17 @@ void expect_complaint(const TriangleMesh& crown, const std::string& words) {
 TriangleMesh scaled(TriangleMesh mesh, double factor) {
   for (Point& p : mesh.vertices) p *= factor;
   return mesh;
+}
+
+TEST(CrownInput, OneHandleIsTooMany) {
+  TriangleMesh ring = test::torus(24, 12);
+  ring.triangles.pop_back();
+  try {
+    require_outward_and_uncut(ring);
+    ADD_FAILURE() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string_view(error.what()).find("1 handle"), std::string_view::npos) << error.what();
+  }
 }
 
 TEST(CrownInput, AGoodCrownPasses) { EXPECT_EQ(complaint(bowl()), ""); }
