@@ -193,9 +193,10 @@ void warn_of_loss(CompletionRecord& record) {
                     crown.kept_triangles, crown.triangles));
 }
 
-/// The first attempt that gives a tooth. Where none does, throws as the first one, or as the first that finds fault
-/// with the crown itself, for that tells more than what came of it; or says that the tooth would not stand in the arch:
-/// what is left of a crown may be hung on its border anyhow, upside down too, and its neighbours know better.
+/// The first attempt that gives a tooth. Where none does, throws that it would not stand in the arch, if a tooth was
+/// made at all: what is left of a crown may be hung on its border anyhow, upside down too, and its neighbours know
+/// better. Else as the first attempt that drops the skirt and finds fault with the crown itself, which tells more than
+/// what came of it, or as the first.
 MadeTooth complete_one(const TriangleMesh& crown, const std::vector<Attempt>& attempts,
                        const CompletionModels& models) {
   const std::optional<ToothDirections>& place = attempts.front().options.directions;

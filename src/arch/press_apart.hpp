@@ -11,7 +11,7 @@
 namespace rhizodont {
 
 struct PressOptions {
-  double gap = 0.03;  ///< mm, (0, 0.5]: teeth that lay in each other are this far apart afterwards
+  double gap = 0.03;  ///< mm, (0, 0.5]: vertices of teeth that lie in each other are sought to be this far apart
   /// mm, (0, 2]: no vertex moves farther. The default is about what is known of a root's surface: predicted ones are
   /// 0.4 mm off in the mean (docs/roots.md).
   double most = 0.5;
