@@ -27,7 +27,7 @@ sources_of() {
       if [ -e "${1%.hpp}.cpp" ]; then echo "${1%.hpp}.cpp"; else
         local name=${1#src/}
         name=${name#include/} name=${name#apps/}
-        git grep -l --untracked -F "#include \"$name\"" -- 'src/*.cpp' 'apps/*.cpp' | head -n 1
+        git grep -l --untracked -F "#include \"$name\"" -- 'src/*.cpp' 'apps/*.cpp' | sed -n 1p
       fi ;;
   esac
 }
