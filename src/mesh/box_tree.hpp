@@ -21,9 +21,9 @@ struct ClosedBox {
 
   bool meets(const ClosedBox& other) const {
     // Without branches: most pairs that are asked about are near each other, and none of the six is likelier to decide.
-    // NOLINTNEXTLINE(clang-diagnostic-bitwise-instead-of-logical)
-    return (low[0] <= other.high[0]) & (other.low[0] <= high[0]) & (low[1] <= other.high[1]) &
-           (other.low[1] <= high[1]) & (low[2] <= other.high[2]) & (other.low[2] <= high[2]);
+    const auto holds = [](double a, double b) { return static_cast<unsigned>(a <= b); };
+    return (holds(low[0], other.high[0]) & holds(other.low[0], high[0]) & holds(low[1], other.high[1]) &
+            holds(other.low[1], high[1]) & holds(low[2], other.high[2]) & holds(other.low[2], high[2])) != 0;
   }
   /// mm^2: square of the distance between the two; 0 where they meet.
   double squared_gap(const ClosedBox& other) const {
