@@ -186,9 +186,11 @@ TEST(Check, NewTrianglesAtTheCrownAndBelowAreToldApart) {
   const auto lowest = std::min_element(pair.tooth.vertices.begin(), pair.tooth.vertices.end(),
                                        [](const Point& a, const Point& b) { return a.z() < b.z(); }) -
                       pair.tooth.vertices.begin();
-  const Triangle at_lowest = *std::find_if(pair.tooth.triangles.begin(), pair.tooth.triangles.end(),
-                                           [&](const Triangle& t) { return t[0] == lowest || t[1] == lowest; });
-  const Point& other = pair.tooth.vertices[static_cast<std::size_t>(at_lowest[2])];
+  const auto at_lowest = std::find_if(pair.tooth.triangles.begin(), pair.tooth.triangles.end(), [&](const Triangle& t) {
+    return std::find(t.begin(), t.end(), lowest) != t.end();
+  });
+  ASSERT_NE(at_lowest, pair.tooth.triangles.end());
+  const Point other = pair.tooth.vertices[static_cast<std::size_t>((*at_lowest)[at_lowest->front() == lowest ? 1 : 0])];
   Point& needle = pair.tooth.vertices[static_cast<std::size_t>(lowest)];
   needle += 0.9 * (other - needle);
   const NewTriangleFigures figures = check(pair.crown, pair.tooth).new_triangles;
