@@ -118,7 +118,7 @@ void add_calibrate_command(CLI::App& app) {
       ->capture_default_str();
   calibrate
       ->add_option("--largest-bias", command->options.largest_bias_mm,
-                   "Lengths of a type whose median is off by more are corrected, mm")
+                   "Lengths of a type that are off by more in the mean are corrected to this, mm")
       ->capture_default_str();
   calibrate->add_option("--threads", command->options.threads, "At most so many threads; 0 = all")
       ->capture_default_str();

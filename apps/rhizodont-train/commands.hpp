@@ -12,6 +12,7 @@ void add_calibrate_command(CLI::App& app);
 void add_completion_command(CLI::App& app);
 void add_skirt_command(CLI::App& app);
 void add_likeness_command(CLI::App& app);
+void add_pose_command(CLI::App& app);
 void add_segment_command(CLI::App& app);
 
 }  // namespace rhizodont::command_line

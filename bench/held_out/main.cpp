@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 // How right roots of generated people are who were never trained on, nor calibrated on, by tooth type.
-// usage: bench_held_out DATA_FOLDER MODELS_FOLDER [PEOPLE=60] [COMPLETED=6] [TILTED=3]
+// usage: bench_held_out DATA_FOLDER MODELS_FOLDER [PEOPLE=60] [COMPLETED=6] [TILTED=3] [POSED=0]
 // Of the first COMPLETED people one tooth of each type is made as a mesh, beside the template fit: distances of the
 // surfaces, numbers of roots, intervals as a user gets them. Of all PEOPLE the same teeth are predicted as points:
 // lengths, apices, intervals, shreds. Of the first TILTED the crowns are cut along the junction and along planes that
-// lean against it.
+// lean against it. Of the first POSED it is told how far off their crowns are laid, and what that costs.
 #include "base/parallel_tasks.hpp"
 #include "completion/uncertainty.hpp"
 #include "evaluation/evaluate_cases.hpp"
@@ -14,6 +14,7 @@
 #include "evaluation/predictors.hpp"
 #include "families/crown_crop.hpp"
 #include "pipeline/models.hpp"
+#include "poses.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
@@ -257,7 +258,8 @@ void print_tilts(const Trial& trial, std::size_t people) {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    fmt::print(stderr, "usage: bench_held_out DATA_FOLDER MODELS_FOLDER [PEOPLE=60] [COMPLETED=6] [TILTED=3]\n");
+    fmt::print(stderr,
+               "usage: bench_held_out DATA_FOLDER MODELS_FOLDER [PEOPLE=60] [COMPLETED=6] [TILTED=3] [POSED=0]\n");
     return 2;
   }
   const auto count = [&](int at, std::size_t usual) {
@@ -270,6 +272,7 @@ int main(int argc, char** argv) {
     if (count(4, 6) > 0) longer = print_completed(trial, count(4, 6));
     if (count(3, 60) > 0) print_points(trial, count(3, 60), longer);
     if (count(5, 3) > 0) print_tilts(trial, count(5, 3));
+    if (count(6, 0) > 0) print_poses(trial.families, trial.models, count(6, 0));
     return 0;
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -8,16 +8,15 @@
 #include "base/stopwatch.hpp"
 #include "common/bench_teeth.hpp"
 #include "completion/complete_points.hpp"
+#include "pipeline/identify_tooth.hpp"
 #include "pipeline/models.hpp"
-#include "teeth/fdi.hpp"
 #include "teeth/prepared_crown.hpp"
 
 namespace rhizodont {
 
 OrientedPoints predicted_points(const TriangleMesh& crown, int fdi, const CompletionModels& models) {
   const auto& content = *content_of(models);
-  const auto type = static_cast<std::size_t>(tooth_type_of_fdi(fdi));
-  const CrownFrame frame = canonical_frame(prepare_crown(crown), fdi, content.atlas.types[type]);
+  const CrownFrame frame = lay_crown(prepare_crown(crown), fdi, {}, content);
   return complete_points(crown, fdi, frame, content.network).cloud;
 }
 

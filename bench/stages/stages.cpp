@@ -4,7 +4,6 @@
 #include "stages/stages.hpp"
 
 #include "completion/complete_points.hpp"
-#include "completion/registration.hpp"
 #include "fusion/fuse.hpp"
 #include "guiding/crown_fit.hpp"
 #include "guiding/fitted_surface.hpp"
@@ -12,12 +11,12 @@
 #include "intake/take_crown.hpp"
 #include "isosurface/isosurface.hpp"
 #include "mesh/geometry.hpp"
+#include "pipeline/identify_tooth.hpp"
 #include "pipeline/models.hpp"
 #include "poisson/indicator.hpp"
 #include "rhizodont/check.hpp"
 #include "rhizodont/complete.hpp"
 #include "rhizodont/io.hpp"
-#include "teeth/fdi.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -93,7 +92,7 @@ struct StageInputs {
   }
 
   const CompletionModels::Content& content() const { return *content_of(*models); }
-  const MeanCrown& mean() const { return content().atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))]; }
+  CrownFrame laid() const { return lay_crown(crown, fdi, {}, content()); }
   TakenCrown taken() const { return take_crown(input, content().atlas, content().skirt, options); }
   OrientedPoints network_points() const { return complete_points(crown.mesh, fdi, frame, content().network).cloud; }
   TriangleMesh tiled() const {
@@ -131,7 +130,7 @@ struct StageInputs {
 std::shared_ptr<const StageInputs> made(const std::filesystem::path& file, int fdi, double e, RootOfBench root,
                                         const std::shared_ptr<const CompletionModels>& models) {
   auto t = std::make_shared<StageInputs>(file, fdi, e, models);
-  t->frame = canonical_frame(t->crown, fdi, t->mean());
+  t->frame = t->laid();
   t->predicted = root == RootOfBench::peg ? peg_below(t->crown) : t->network_points();
   t->cloud = assemble_guiding_cloud(t->crown, t->predicted);
   t->indicator = std::make_unique<IndicatorFunction>(solve_indicator(t->cloud.samples, t->cloud.confidence));
@@ -157,7 +156,7 @@ std::vector<BenchStage> stages_of(const std::filesystem::path& crown, int fdi, d
   std::vector<BenchStage> stages{
       {"reading", [t] { load_mesh(t->file); }},
       {"intake", [t] { prepare_crown(t->taken().kept.mesh); }},
-      {"registration", [t] { canonical_frame(t->crown, t->fdi, t->mean()); }},
+      {"pose", [t] { t->laid(); }},
       {"completion_network", [t] { t->network_points(); }},
       {"orientation", [t] { assemble_guiding_cloud(t->crown, t->predicted); }},
       {"indicator_function", [t] { solve_indicator(t->cloud.samples, t->cloud.confidence); }},

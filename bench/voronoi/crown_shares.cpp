@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 
 #include "completion/complete_points.hpp"
-#include "completion/registration.hpp"
 #include "fusion/edge_lengths.hpp"
 #include "fusion/fuse.hpp"
 #include "fusion/join.hpp"
@@ -13,12 +12,12 @@
 #include "guiding/guiding_cloud.hpp"
 #include "intake/take_crown.hpp"
 #include "mesh/geometry.hpp"
+#include "pipeline/identify_tooth.hpp"
 #include "pipeline/models.hpp"
 #include "rhizodont/error.hpp"
 #include "rhizodont/io.hpp"
 #include "tables.hpp"
 #include "teeth/crown_border.hpp"
-#include "teeth/fdi.hpp"
 #include "teeth/prepared_crown.hpp"
 #include "voronoi/delaunay_mesh.hpp"
 #include "voronoi/restricted_voronoi.hpp"
@@ -46,8 +45,7 @@ CrownCase prepare(const TriangleMesh& input, int fdi, const CompletionModels::Co
   CompleteOptions options;
   options.fdi = fdi;
   CrownCase result{prepare_crown(take_crown(input, models.atlas, std::nullopt, options).kept.mesh), {}, {}};
-  const CrownFrame frame =
-      canonical_frame(result.crown, fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))]);
+  const CrownFrame frame = lay_crown(result.crown, fdi, {}, models);
   const PredictedTooth predicted = complete_points(result.crown.mesh, fdi, frame, models.network);
   result.surface =
       fitted_guiding_surface(assemble_guiding_cloud(result.crown, predicted.cloud), result.crown, options.e).mesh;

@@ -13,8 +13,8 @@ namespace rhizodont {
 /// Weights and mean crowns, loaded once and used for many teeth, from several threads if wished.
 class RHIZODONT_EXPORT CompletionModels {
  public:
-  /// Reads completion.safetensors and atlas.safetensors from a folder, and skirt.safetensors,
-  /// likeness.safetensors and arch.safetensors if they are there. Throws InputError if one is missing or damaged.
+  /// Reads completion.safetensors and atlas.safetensors from a folder, and skirt.safetensors, likeness.safetensors,
+  /// arch.safetensors and pose.safetensors if they are there. Throws InputError if one is missing or damaged.
   static CompletionModels load(const std::filesystem::path& folder);
   CompletionModels(CompletionModels&&) noexcept;
   CompletionModels& operator=(CompletionModels&&) noexcept;

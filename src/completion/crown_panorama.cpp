@@ -75,9 +75,7 @@ CrownPanorama crown_panorama(const TriangleMesh& crown, const Eigen::Vector3d& a
   constexpr auto rows = static_cast<std::ptrdiff_t>(CrownPanorama::rows);
   constexpr auto columns = static_cast<std::ptrdiff_t>(CrownPanorama::columns);
   constexpr std::size_t places = CrownPanorama::rows * CrownPanorama::columns;
-  const Eigen::Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
-  Eigen::Matrix3d turn;
-  turn << x.transpose(), y.transpose(), axis.transpose();
+  const Eigen::Matrix3d turn = panorama_view(axis);
   std::vector<Eigen::Vector3d> rays(places);
   for (std::ptrdiff_t r = 0; r < rows; ++r)
     for (std::ptrdiff_t c = 0; c < columns; ++c)
@@ -122,6 +120,13 @@ CrownPanorama crown_panorama(const TriangleMesh& crown, const Eigen::Vector3d& a
         panorama.values[channel * places + at] = static_cast<float>(here[channel]);
     }
   return panorama;
+}
+
+Eigen::Matrix3d panorama_view(const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
+  Eigen::Matrix3d view;
+  view << x.transpose(), y.transpose(), axis.transpose();
+  return view;
 }
 
 Point panorama_centre(const TriangleMesh& open_crown, const Eigen::Vector3d& axis) {

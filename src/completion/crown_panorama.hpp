@@ -27,6 +27,9 @@ struct CrownPanorama {
 /// Precondition: finite vertices, valid indices.
 CrownPanorama crown_panorama(const TriangleMesh& crown, const Eigen::Vector3d& axis, const Point& centre);
 
+/// World directions to those of a panorama: x towards azimuth 0, y towards 90 degrees, z along the axis (unit).
+Eigen::Matrix3d panorama_view(const Eigen::Vector3d& axis);
+
 /// Where a crown is looked at from: on the line along the axis through its area's centroid, at its border's mean
 /// height. Throws InputError for a mesh without area or without a border.
 Point panorama_centre(const TriangleMesh& open_crown, const Eigen::Vector3d& axis);

@@ -220,6 +220,12 @@ CanonicalFrame turned_frame(const CanonicalFrame& upright, const Eigen::Matrix3d
   return frame;
 }
 
+// The same pose turned about its axis, so that +y is the part across it of a direction in the world.
+CanonicalFrame facing(const CanonicalFrame& frame, const Eigen::Vector3d& buccal) {
+  const Eigen::Vector3d towards = frame.direction_to_canonical(buccal);
+  return turned_frame(frame, about_z(std::atan2(towards.x(), towards.y())));
+}
+
 // A crown brought upright and what laying a mean crown on it found from there.
 struct Laid {
   CanonicalFrame upright;
@@ -242,17 +248,21 @@ double turn_about_z(const Laid& laid) {
   return std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
 }
 
+/// x and y of a unit axis, not too long.
+Eigen::Vector2d form_axis_along(const Eigen::Vector3d& axis) {
+  constexpr double longest = 0.5;
+  return longest / std::max(axis.head<2>().norm(), longest) * axis.head<2>();
+}
+
 CrownFrame crown_frame(const Laid& laid) {
   // The axis is the crown's own: of the registration only the turn about it is kept.
   const Eigen::Matrix3d& r = laid.found.at.rotation;
   CrownFrame result;
   const Eigen::Matrix3d turn = about_z(turn_about_z(laid));
   result.frame = turned_frame(laid.upright, turn);
-  constexpr double longest = 0.5;
   const Eigen::Vector3d up = (turn * r.transpose()).col(2);
-  const double length = up.head<2>().norm();
   // What was laid upside down tells nothing.
-  if (up.z() > 0) result.form_axis = longest / std::max(length, longest) * up.head<2>();
+  if (up.z() > 0) result.form_axis = form_axis_along(up);
   result.residual_mm = laid.found.residual / laid.found.at.scale;
   return result;
 }
@@ -275,21 +285,17 @@ CrownFrame frame_from(const OrientedPoints& points, const Eigen::Vector3d& axis,
   return crown_frame(lay(points, upright_frame(axis, centre, right_side), mean, options));
 }
 
-/// As `frame_from`, of a crown whose axis and `buccal` the arch tells: +y is not far from `buccal`, and is `buccal`
-/// itself where the registration turns away from it. The form's lean is against an axis that knows of the tooth's
-/// place, not against a border alone: two estimates of one axis, each taken for half (measured in docs/arches.md).
+/// As `frame_from`, of a crown of which it is known where the cheek is: +y is not far from `buccal`, and is `buccal`
+/// itself where the registration turns away from it.
 CrownFrame frame_near(const OrientedPoints& points, const Eigen::Vector3d& axis, const Point& centre, bool right_side,
                       const Eigen::Vector3d& buccal, const MeanCrown& mean, const RegistrationOptions& options) {
   constexpr double furthest_start = std::numbers::pi / 4, furthest_found = std::numbers::pi / 3;
-  CanonicalFrame upright = upright_frame(axis, centre, right_side);
-  const Eigen::Vector3d towards = upright.direction_to_canonical(buccal);
-  upright = turned_frame(upright, about_z(std::atan2(towards.x(), towards.y())));
+  const CanonicalFrame upright = facing(upright_frame(axis, centre, right_side), buccal);
   constexpr int steps = 4;
   std::vector<Eigen::Matrix3d> starts;
   for (int i = -steps; i <= steps; ++i) starts.push_back(about_z(furthest_start * i / steps));
   const Laid laid = lay(points, upright, mean, starts, options);
   CrownFrame found = crown_frame(laid);
-  found.form_axis /= 2;
   if (std::abs(turn_about_z(laid)) > furthest_found) {
     found.frame = upright;
     found.form_axis.setZero();
@@ -309,14 +315,22 @@ Eigen::Vector3d CrownFrame::form_direction() const {
 }
 
 CrownFrame canonical_frame(const PreparedCrown& crown, int fdi, const MeanCrown& mean,
-                           const RegistrationOptions& options, const std::optional<ToothDirections>& directions) {
+                           const RegistrationOptions& options, const std::optional<ToothDirections>& directions,
+                           const std::optional<CrownPose>& seen) {
   require_in_range(options);
   check_mean(mean);
   const bool right_side = is_right_side(fdi);
   const OrientedPoints points = surface_points(crown.mesh);
   const Point centre = area_centroid(crown.mesh);
-  if (directions) return frame_near(points, crown.growth_axis, centre, right_side, directions->buccal, mean, options);
-  return frame_from(points, crown.growth_axis, centre, right_side, mean, options);
+  if (!directions && !seen) return frame_from(points, crown.growth_axis, centre, right_side, mean, options);
+  CrownFrame found = frame_near(points, crown.growth_axis, centre, right_side,
+                                directions ? directions->buccal : seen->buccal, mean, options);
+  if (seen && !directions) found.frame = facing(found.frame, seen->buccal);
+  if (seen) found.form_axis = form_axis_along(found.frame.direction_to_canonical(seen->form_axis));
+  // The form's lean is against an axis that knows of the tooth's place, not against a border alone: two estimates of
+  // one axis, each taken for half (measured in docs/arches.md).
+  if (directions) found.form_axis /= 2;
+  return found;
 }
 
 TypeGuess guess_fdi_type(const PreparedCrown& crown, const Atlas& atlas, const RegistrationOptions& options) {

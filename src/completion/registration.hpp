@@ -3,6 +3,7 @@
 #pragma once
 
 #include "completion/mean_crowns.hpp"
+#include "completion/pose_network.hpp"
 #include "rhizodont/mesh.hpp"
 #include "rhizodont/tooth_directions.hpp"
 #include "teeth/fdi.hpp"
@@ -45,10 +46,12 @@ struct CrownFrame {
 
 /// Canonical pose of an open crown with a known FDI number: axis and centre from the crown itself, rotation about the
 /// axis by registering the crown to the mean crown of its type, within 60 degrees of `directions`' where they are
-/// known. Deterministic. Throws UsageError for an unknown FDI number.
+/// known, else as the crown was seen to stand (`seen`), whose lean of the form it takes over; the registration then
+/// tells the residual alone. Deterministic. Throws UsageError for an unknown FDI number.
 CrownFrame canonical_frame(const PreparedCrown& crown, int fdi, const MeanCrown& mean,
                            const RegistrationOptions& options = {},
-                           const std::optional<ToothDirections>& directions = {});
+                           const std::optional<ToothDirections>& directions = {},
+                           const std::optional<CrownPose>& seen = {});
 
 /// What tooth a crown seems to be.
 struct TypeGuess {

@@ -1,66 +1,21 @@
 // SPDX-FileCopyrightText: Rhizodont contributors
 // SPDX-License-Identifier: GPL-3.0-or-later
-//
-// Convolutions that wrap around: B. Shi et al., "DeepPano", 2015. Batch normalisation (S. Ioffe, C. Szegedy, 2015) is
-// part of the weights here. Residual connection: K. He et al., 2016.
 #include "completion/tooth_classifier.hpp"
 
 #include "rhizodont/error.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
 namespace rhizodont {
 namespace {
 
-/// Channels (rows) of a map whose places (columns) lie row by row.
-struct Map {
-  Eigen::MatrixXf values;
-  Eigen::Index rows = 1, columns = 1;
-};
-
-/// Each output place's inputs as a column. Columns of the map wrap around, beyond its rows there is nothing.
-Map neighbourhoods(const Map& map, Eigen::Index kernel_rows, Eigen::Index kernel_columns, Eigen::Index stride) {
-  const Eigen::Index channels = map.values.rows(), kernel = kernel_rows * kernel_columns;
-  Map result{Eigen::MatrixXf::Zero(channels * kernel, (map.rows / stride) * (map.columns / stride)), map.rows / stride,
-             map.columns / stride};
-  if (map.rows == 1) result = {Eigen::MatrixXf::Zero(channels * kernel, map.columns), 1, map.columns};
-  for (Eigen::Index r = 0; r < result.rows; ++r)
-    for (Eigen::Index c = 0; c < result.columns; ++c)
-      for (Eigen::Index i = 0; i < kernel_rows; ++i) {
-        const Eigen::Index row = r * stride + i - kernel_rows / 2;
-        if (row < 0 || row >= map.rows) continue;
-        for (Eigen::Index j = 0; j < kernel_columns; ++j) {
-          const Eigen::Index column = (c * stride + j - kernel_columns / 2 + map.columns) % map.columns;
-          for (Eigen::Index k = 0; k < channels; ++k)
-            result.values(k * kernel + i * kernel_columns + j, r * result.columns + c) =
-                map.values(k, row * map.columns + column);
-        }
-      }
-  return result;
-}
-
-CrownPanorama mirrored(const CrownPanorama& panorama) {
-  constexpr std::size_t columns = CrownPanorama::columns, lines = CrownPanorama::channels * CrownPanorama::rows;
-  constexpr std::size_t along_columns = 3;  // the channel that changes its sign
-  CrownPanorama result = panorama;
-  for (std::size_t line = 0; line < lines; ++line) {
-    const auto begin = result.values.begin() + static_cast<std::ptrdiff_t>(line * columns);
-    std::reverse(begin, begin + static_cast<std::ptrdiff_t>(columns));
-    if (line / CrownPanorama::rows == along_columns)
-      std::transform(begin, begin + static_cast<std::ptrdiff_t>(columns), begin, [](float x) { return -x; });
-  }
-  return result;
-}
+constexpr const char* classifier_weights = "The weights that tell teeth apart";
 
 Eigen::VectorXd log_softmax(const Eigen::VectorXd& scores) {
   const double most = scores.maxCoeff();
   return scores.array() - most - std::log((scores.array() - most).exp().sum());
 }
-
-/// Strides of the convolutions over rows and columns.
-constexpr std::array<Eigen::Index, 5> strides{1, 2, 1, 2, 1};
 
 }  // namespace
 
@@ -68,73 +23,19 @@ std::size_t tooth_of_fdi(int fdi) {
   return 2 * static_cast<std::size_t>(tooth_type_of_fdi(fdi)) + (is_right_side(fdi) ? 1 : 0);
 }
 
-ToothClassifier::ToothClassifier(const TensorFile& file) {
-  const auto layer = [&](const std::string& name, std::size_t dimensions) {
-    const auto weight = file.tensors.find(name + ".weight"), bias = file.tensors.find(name + ".bias");
-    if (weight == file.tensors.end() || bias == file.tensors.end() || weight->second.shape.size() != dimensions ||
-        weight->second.type == TensorType::int32 || bias->second.type == TensorType::int32)
-      throw InputError("The weights that tell teeth apart lack the layer " + name + ".");
-    const std::vector<std::int64_t>& shape = weight->second.shape;
-    const std::vector<float> values = load_floats(weight->second), biases = load_floats(bias->second);
-    Layer result;
-    result.inputs = shape[1];
-    if (dimensions == 4) result.kernel_rows = shape[2];
-    if (dimensions > 2) result.kernel_columns = shape.back();
-    result.weight = Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-        values.data(), shape[0], static_cast<Eigen::Index>(values.size()) / std::max<Eigen::Index>(1, shape[0]));
-    result.bias = Eigen::Map<const Eigen::VectorXf>(biases.data(), static_cast<Eigen::Index>(biases.size()));
-    if (result.bias.size() != result.weight.rows() || !result.weight.allFinite() || !result.bias.allFinite())
-      throw InputError("The weights that tell teeth apart are damaged in the layer " + name + ".");
-    return result;
-  };
-  for (std::size_t i = 0; i < strides.size(); ++i) maps_.push_back(layer("maps." + std::to_string(i), 4));
-  for (std::size_t i = 0; i < 3; ++i) around_.push_back(layer("around." + std::to_string(i), 3));
-  for (std::size_t i = 0; i < 2; ++i) dense_.push_back(layer("dense." + std::to_string(i), 2));
-
-  Eigen::Index channels = CrownPanorama::channels + 1, rows = CrownPanorama::rows;
-  bool fits = true;
-  for (std::size_t i = 0; i < maps_.size(); ++i) {
-    fits = fits && maps_[i].inputs == channels;
-    channels = maps_[i].weight.rows(), rows /= strides[i];
-  }
-  channels *= rows;
-  for (const Layer& convolution : around_) {
-    fits = fits && convolution.inputs == channels;
-    channels = convolution.weight.rows();
-  }
-  fits = fits && around_[1].weight.rows() == around_[2].weight.rows() && dense_[0].inputs == 2 * channels &&
-         dense_[1].inputs == dense_[0].weight.rows() &&
-         dense_[1].weight.rows() == static_cast<Eigen::Index>(tooth_count) + 1;
-  if (!fits) throw InputError("The weights that tell teeth apart do not fit each other.");
+ToothClassifier::ToothClassifier(const TensorFile& file)
+    : features_(file, classifier_weights),
+      dense_{panorama_layer(file, "dense.0", 2, classifier_weights),
+             panorama_layer(file, "dense.1", 2, classifier_weights)} {
+  if (dense_[0].inputs != 2 * features_.channels() || dense_[1].inputs != dense_[0].weight.rows() ||
+      dense_[1].weight.rows() != static_cast<Eigen::Index>(tooth_count) + 1)
+    throw InputError(std::string(classifier_weights) + " do not fit each other.");
 }
 
 Eigen::VectorXd ToothClassifier::scores(const CrownPanorama& panorama) const {
-  constexpr auto channels = static_cast<Eigen::Index>(CrownPanorama::channels);
-  constexpr auto rows = static_cast<Eigen::Index>(CrownPanorama::rows);
-  constexpr auto columns = static_cast<Eigen::Index>(CrownPanorama::columns);
-  const auto convolved = [](const Map& map, const Layer& layer, Eigen::Index stride) {
-    Map result = neighbourhoods(map, layer.kernel_rows, layer.kernel_columns, stride);
-    result.values = ((layer.weight * result.values).colwise() + layer.bias).cwiseMax(0.0F);
-    return result;
-  };
-  Map map{Eigen::MatrixXf(channels + 1, rows * columns), rows, columns};
-  map.values.topRows(channels) =
-      Eigen::Map<const Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(panorama.values.data(),
-                                                                                              channels, rows * columns);
-  for (Eigen::Index r = 0; r < rows; ++r)  // the last channel says which row it is, -1 to 1
-    map.values.row(channels)
-        .segment(r * columns, columns)
-        .setConstant(2 * static_cast<float>(r) / static_cast<float>(rows - 1) - 1);
-  for (std::size_t i = 0; i < maps_.size(); ++i) map = convolved(map, maps_[i], strides[i]);
-  // From here on a column is one place with all that lies above it.
-  Map around{Eigen::MatrixXf(map.values.rows() * map.rows, map.columns), 1, map.columns};
-  for (Eigen::Index k = 0; k < map.values.rows(); ++k)
-    for (Eigen::Index r = 0; r < map.rows; ++r)
-      around.values.row(k * map.rows + r) = map.values.row(k).segment(r * map.columns, map.columns);
-  around = convolved(convolved(around, around_[0], 1), around_[1], 1);
-  around.values += convolved(around, around_[2], 1).values;
-  Eigen::VectorXf pooled(2 * around.values.rows());
-  pooled << around.values.rowwise().mean(), around.values.rowwise().maxCoeff();
+  const Eigen::MatrixXf around = features_(panorama);
+  Eigen::VectorXf pooled(2 * around.rows());
+  pooled << around.rowwise().mean(), around.rowwise().maxCoeff();
   const Eigen::VectorXf hidden = (dense_[0].weight * pooled + dense_[0].bias).cwiseMax(0.0F);
   return (dense_[1].weight * hidden + dense_[1].bias).cast<double>();
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "completion/crown_panorama.hpp"
+#include "completion/panorama_features.hpp"
 #include "networks/safetensors.hpp"
 #include "teeth/fdi.hpp"
 
@@ -10,7 +11,6 @@
 
 #include <array>
 #include <cstddef>
-#include <vector>
 
 namespace rhizodont {
 
@@ -37,14 +37,10 @@ class ToothClassifier {
   ToothProbabilities operator()(const CrownPanorama& panorama) const;
 
  private:
-  struct Layer {
-    Eigen::MatrixXf weight;  // outputs x (inputs x kernel rows x kernel columns)
-    Eigen::VectorXf bias;
-    Eigen::Index inputs = 0, kernel_rows = 1, kernel_columns = 1;
-  };
   Eigen::VectorXd scores(const CrownPanorama& panorama) const;
 
-  std::vector<Layer> maps_, around_, dense_;
+  PanoramaFeatures features_;
+  std::array<PanoramaLayer, 2> dense_;
 };
 
 }  // namespace rhizodont

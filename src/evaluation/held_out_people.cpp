@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "evaluation/held_out_people.hpp"
 
-#include "completion/registration.hpp"
 #include "completion/uncertainty.hpp"
 #include "evaluation/root_apices.hpp"
 #include "evaluation/root_figures.hpp"
 #include "families/crown_crop.hpp"
 #include "families/scanner_mesh.hpp"
 #include "mesh/geometry.hpp"
+#include "pipeline/identify_tooth.hpp"
 #include "pipeline/models.hpp"
 #include "pipeline/prediction.hpp"
 #include "rhizodont/error.hpp"
@@ -66,8 +66,7 @@ TriangleMesh scanned_crown(const TriangleMesh& crown, const PersonDraw& person) 
 PredictedRoot predicted_root(const TriangleMesh& crown, const TriangleMesh& truth, int fdi,
                              const CompletionModels& models) {
   const CompletionModels::Content& content = *content_of(models);
-  const CrownFrame frame =
-      canonical_frame(prepare_crown(crown), fdi, content.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))]);
+  const CrownFrame frame = lay_crown(prepare_crown(crown), fdi, {}, content);
   const RootPrediction predicted =
       predict_tooth(crown, fdi, frame, content, [](const RootPrediction&) { return true; });
   PredictedRoot root;

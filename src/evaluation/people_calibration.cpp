@@ -154,8 +154,9 @@ PeopleCalibration calibrate_on_people(const ToothFamilies& families, const Compl
     errors[root.outcome.fdi].push_back(root.outcome.length_mm - root.outcome.true_length_mm);
   for (const auto& [fdi, of_type] : errors) {
     result.bias_mm[fdi] = std::accumulate(of_type.begin(), of_type.end(), 0.0) / static_cast<double>(of_type.size());
-    const double middle = result.median_bias_mm[fdi] = median(of_type);
-    if (std::abs(middle) > options.largest_bias_mm) result.correction_mm[fdi] = -middle;
+    result.median_bias_mm[fdi] = median(of_type);
+    const double tolerated = std::clamp(result.bias_mm.at(fdi), -options.largest_bias_mm, options.largest_bias_mm);
+    if (tolerated != result.bias_mm.at(fdi)) result.correction_mm[fdi] = tolerated - result.bias_mm.at(fdi);
   }
   std::vector<RootOutcome> roots;
   for (const PredictedRoot& root : uncorrected) {

@@ -15,11 +15,12 @@
 namespace rhizodont {
 
 struct PeopleCalibrationOptions {
-  std::size_t people = 250;       ///< >= 20: one tooth of each type of each of them is predicted
-  std::size_t completed = 12;     ///< 1..people: of how many of them the teeth are completed as well
-  std::vector<int> types = {};    ///< 0..15; empty: all
-  int threads = 0;                ///< >= 0; 0: all
-  double largest_bias_mm = 0.15;  ///< >= 0: the lengths of a type are corrected where their median is off by more
+  std::size_t people = 250;     ///< >= 20: one tooth of each type of each of them is predicted
+  std::size_t completed = 12;   ///< 1..people: of how many of them the teeth are completed as well
+  std::vector<int> types = {};  ///< 0..15; empty: all
+  int threads = 0;              ///< >= 0; 0: all
+  double largest_bias_mm =
+      0.08;  ///< >= 0: what the lengths of a type are off by beyond this, in the mean, is taken back
   std::function<void(std::size_t done, std::size_t of)> progress = {};  ///< called from several threads, one at a time
 };
 
@@ -28,8 +29,8 @@ struct PeopleCalibration {
   UncertaintyScales all;                     ///< of all types together
   std::map<int, UncertaintyScales> types;    ///< by the FDI number of the type's left tooth, as all below
   std::map<int, double> bias_mm;             ///< root lengths without correction, predicted minus true, mean
-  std::map<int, double> median_bias_mm;      ///< likewise; a few roots that are far off have no say in it
-  std::map<int, double> correction_mm;       ///< of the types whose median is off by more than it may be
+  std::map<int, double> median_bias_mm;      ///< likewise, the median
+  std::map<int, double> correction_mm;       ///< of the types that are off by more than they may be
   std::map<int, double> surface_longer_mm;   ///< median of a completed tooth's root less that of its points
   std::size_t predicted = 0, completed = 0;  ///< teeth
 };

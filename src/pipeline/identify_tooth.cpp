@@ -9,6 +9,14 @@
 
 namespace rhizodont {
 
+CrownFrame lay_crown(const PreparedCrown& crown, int fdi, const std::optional<ToothDirections>& directions,
+                     const CompletionModels::Content& models) {
+  std::optional<CrownPose> seen;
+  if (models.pose) seen = models.pose->pose_of(crown.mesh, fdi);
+  return canonical_frame(crown, fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(fdi))], {},
+                         directions, seen);
+}
+
 IdentifiedTooth identify_tooth(const PreparedCrown& crown, std::optional<int> fdi,
                                const std::optional<ToothDirections>& directions,
                                const CompletionModels::Content& models) {
@@ -23,8 +31,7 @@ IdentifiedTooth identify_tooth(const PreparedCrown& crown, std::optional<int> fd
     if (tooth.guessed)
       tooth.warning = fmt::format("No FDI number was given; by its shape the crown was taken for tooth {}.", tooth.fdi);
   }
-  tooth.frame = canonical_frame(
-      crown, tooth.fdi, models.atlas.types[static_cast<std::size_t>(tooth_type_of_fdi(tooth.fdi))], {}, directions);
+  tooth.frame = lay_crown(crown, tooth.fdi, directions, models);
   return tooth;
 }
 

@@ -21,6 +21,10 @@ struct IdentifiedTooth {
   std::optional<std::string> warning;     ///< a sentence for the user
 };
 
+/// The canonical pose of a crown whose tooth is known, by what the models have for it. Throws as `canonical_frame`.
+CrownFrame lay_crown(const PreparedCrown& crown, int fdi, const std::optional<ToothDirections>& directions,
+                     const CompletionModels::Content& models);
+
 /// Which tooth the crown is, whether it looks like it, and its canonical pose. @param fdi unset: guessed, and so said
 /// @param directions  how it stands, where that is known
 /// Throws InputError for what looks like no tooth, and as `canonical_frame`.

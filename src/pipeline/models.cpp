@@ -29,6 +29,7 @@ namespace {
 constexpr const char* skirt_file = "skirt.safetensors";
 constexpr const char* likeness_file = "likeness.safetensors";
 constexpr const char* arch_file = "arch.safetensors";
+constexpr const char* pose_file = "pose.safetensors";
 
 }  // namespace
 
@@ -42,7 +43,7 @@ std::vector<std::filesystem::path> model_files(const std::filesystem::path& fold
                        ", where the models should be.");
   }
   std::error_code ignored;
-  for (const char* optional : {skirt_file, likeness_file, arch_file})
+  for (const char* optional : {skirt_file, likeness_file, arch_file, pose_file})
     if (std::filesystem::exists(folder / optional, ignored)) files.push_back(folder / optional);
   return files;
 }
@@ -51,7 +52,7 @@ CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
   model_files(folder);
   auto content = std::make_shared<Content>(Content{load_atlas(folder / atlas_file),
                                                    CompletionNetwork::load(folder / completion_file), std::nullopt,
-                                                   std::nullopt, std::nullopt});
+                                                   std::nullopt, std::nullopt, std::nullopt});
   std::error_code ignored;
   if (const auto skirt = folder / skirt_file; std::filesystem::exists(skirt, ignored))
     content->skirt = SurfaceNetwork::load(skirt);
@@ -59,6 +60,8 @@ CompletionModels CompletionModels::load(const std::filesystem::path& folder) {
     content->likeness = load_likeness(likeness);
   if (const auto arch = folder / arch_file; std::filesystem::exists(arch, ignored))
     content->arch = load_arch_model(arch);
+  if (const auto pose = folder / pose_file; std::filesystem::exists(pose, ignored))
+    content->pose.emplace(read_safetensors(pose));
   return CompletionModels(std::move(content));
 }
 

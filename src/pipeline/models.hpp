@@ -4,6 +4,7 @@
 
 #include "completion/likeness.hpp"
 #include "completion/mean_crowns.hpp"
+#include "completion/pose_network.hpp"
 #include "networks/completion_network.hpp"
 #include "networks/surface_network.hpp"
 #include "rhizodont/complete.hpp"
@@ -27,6 +28,7 @@ struct CompletionModels::Content {
   std::optional<SurfaceNetwork> skirt;
   std::optional<LikenessModel> likeness;
   std::optional<ArchModel> arch;
+  std::optional<PoseNetwork> pose;
 };
 
 /// What the models are made of: for the rooms that run them.

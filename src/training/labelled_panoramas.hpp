@@ -16,4 +16,11 @@ struct LabelledPanoramas {
   std::vector<std::int32_t> labels;  ///< one per panorama: pairs 2k, 2k + 1 are mirror images; the last is its own
 };
 
+/// Panoramas of left teeth with how their crowns stand; labels are types, 0..15.
+struct PosedPanoramas {
+  LabelledPanoramas panoramas;
+  std::vector<float> azimuths;  ///< radians, one per panorama: towards the cheek
+  std::vector<float> leans;     ///< two per panorama: the form's axis (unit) along azimuths 0 and 90 degrees
+};
+
 }  // namespace rhizodont

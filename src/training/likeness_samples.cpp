@@ -8,11 +8,9 @@
 #include "families/unlike_crowns.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/frame.hpp"
+#include "training/panorama_view.hpp"
 #include "training/sample_numbers.hpp"
 
-#include <Eigen/Geometry>
-
-#include <cmath>
 #include <optional>
 
 namespace rhizodont {
@@ -39,18 +37,6 @@ std::optional<TriangleMesh> draw_crowded_crown(const SyntheticTooth& tooth, Rand
     if (auto crown = crop_crown(tooth, line)) return crown;
   }
   return std::nullopt;
-}
-
-/// Borders are ragged: axis and middle found from them differ from scan to scan.
-CrownPanorama seen_from_beside(const TriangleMesh& crown, RandomStream& random) {
-  constexpr double lean = 0.06, aside_mm = 0.25;
-  const auto draw = [&] {
-    const double x = random.normal(), y = random.normal(), z = random.normal();
-    return Eigen::Vector3d(x, y, z);
-  };
-  Eigen::Vector3d axis = growth_axis(crown);
-  axis = (axis + random.normal(0.0, lean) * axis.cross(draw()).normalized()).normalized();
-  return crown_panorama(crown, axis, panorama_centre(crown, axis) + aside_mm * draw());
 }
 
 }  // namespace
@@ -92,7 +78,9 @@ std::vector<LikenessSample> make_likeness_samples(const ToothFamilies& families,
   std::vector<LikenessSample> samples;
   const auto add = [&](std::size_t label, const auto& make) {
     try {
-      samples.push_back({seen_from_beside(make(), random), label});
+      const TriangleMesh crown = make();
+      const PanoramaView view = view_from_beside(crown, growth_axis(crown), random);
+      samples.push_back({crown_panorama(crown, view.axis, view.centre), label});
     } catch (const Error&) {  // a gum line or a cut that leaves nothing
     }
   };

@@ -153,6 +153,22 @@ TEST(CanonicalFrameOfCrowns, anArchsDirectionsLeaveHalfOfTheFormsLean) {
   }
 }
 
+TEST(CanonicalFrameOfCrowns, aPoseThatWasSeenTellsTurnAndLean) {
+  for (const Sample& sample : samples) {
+    const PreparedCrown crown = prepare_crown(sample_crown(sample));
+    const CrownFrame laid = canonical_frame(crown, sample.fdi, mean_of(sample.fdi));
+    const auto to_world = [&](double x, double y, double z) {
+      return laid.frame.direction_to_world(Eigen::Vector3d(x, y, z).normalized());
+    };
+    const CrownPose seen{to_world(0.3, 1, 0), to_world(0.2, -0.1, 1)};
+    const CrownFrame found = canonical_frame(crown, sample.fdi, mean_of(sample.fdi), {}, {}, seen);
+    EXPECT_LT((found.frame.direction_to_world(Eigen::Vector3d::UnitY()) - seen.buccal).norm(), 1e-9) << sample.fdi;
+    EXPECT_LT((found.frame.direction_to_world(found.form_direction()) - seen.form_axis).norm(), 1e-9) << sample.fdi;
+    EXPECT_LT((found.frame.direction_to_world(Eigen::Vector3d::UnitZ()) - crown.growth_axis).norm(), 1e-9);
+    EXPECT_NEAR(found.residual_mm, laid.residual_mm, 0.1 * laid.residual_mm) << "that of the crown laid there";
+  }
+}
+
 TEST(CanonicalFrameOfCrowns, isTheSameForAnyNumberOfThreads) {
   const TriangleMesh crown = sample_crown(samples[3]);
   const TypeGuess many = guess_fdi_type(prepare_crown(crown), atlas());

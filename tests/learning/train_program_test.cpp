@@ -15,11 +15,13 @@ TEST_F(TrainProgram, SaysWhatItNeeds) {
   expect_error("completion --out run", 2, "--data");
   expect_error("skirt --data .", 2, "--out");
   expect_error("likeness --data .", 2, "--out");
+  expect_error("pose --data .", 2, "--out");
   expect_error("completions", 2, "did you mean completion?");
   expect_error("completion --data . --out run", 3, "anatomy.csv");
   std::filesystem::create_directory(folder.path() / "data");
   folder.write("data/anatomy.csv", "teeth");
-  for (const char* call : {"completion --out run", "skirt --out run", "likeness --out weights", "segment --out run"})
+  for (const char* call :
+       {"completion --out run", "skirt --out run", "likeness --out weights", "pose --out weights", "segment --out run"})
     expect_error(call + std::string(" --data data --json data/anatomy.csv"), 2, "which is read");
   EXPECT_EQ(test::read_all(folder.path() / "data/anatomy.csv"), "teeth");
   EXPECT_EQ(run("--version").out.rfind("rhizodont-train ", 0), 0U);
@@ -31,7 +33,9 @@ TEST_F(TrainProgram, NeverReplacesACardUnasked) {
     expect_error(std::string(command) + " --out run --export weights.safetensors", 2, "--overwrite");
     EXPECT_EQ(test::read_all(folder.path() / "weights.md"), "my notes");
   }
-  expect_error("likeness --data . --out weights.ply", 2, "a weight file must not have the name of a mesh");
+  for (const char* command : {"likeness", "pose"})
+    expect_error(command + std::string(" --data . --out weights.ply"), 2,
+                 "a weight file must not have the name of a mesh");
 }
 
 TEST_F(TrainProgram, CalibrateAsksForWhatItNeeds) {
