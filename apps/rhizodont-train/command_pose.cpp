@@ -3,7 +3,6 @@
 #include "command_line/output_checks.hpp"
 #include "command_line/output_options.hpp"
 #include "commands.hpp"
-#include "completion/pose_network.hpp"
 #include "learning/train_pose.hpp"
 #include "networks/safetensors.hpp"
 #include "rhizodont/error.hpp"
@@ -41,7 +40,6 @@ void run(const PoseCommand& command) {
   options.progress = progress_of(command.said);
   TensorFile weights = train_pose(panoramas, options);
   const PoseErrors errors = pose_errors(families, PoseNetwork(weights), command.held_out);
-  weights.metadata["content"] = "A network that tells how a crown stands (src/completion/pose_network.hpp)";
   weights.metadata["training.panoramas"] = std::to_string(panoramas.azimuths.size());
   weights.metadata["training.steps"] = std::to_string(options.steps);
   weights.metadata["attribution"] =

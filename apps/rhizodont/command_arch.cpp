@@ -192,11 +192,12 @@ void add_arch_command(CLI::App& app) {
   arch->add_option("--root-length", command->lengths,
                    "Lengths of roots measured on X-rays, in mm: 36=14.2 11=13.0; the other teeth follow");
   arch->add_option("--root-lengths", command->lengths_file, "The same from a file with lines 36,14.2");
-  arch->add_flag(
+  CLI::Option* resolve = arch->add_flag(
       "--resolve-collisions", command->options.resolve_collisions,
       "Turn, bend or shorten roots that come too near to other teeth, by the least change; new surface that lies in a "
       "neighbour gives way");
   arch->add_option("--clearance", command->options.clearance_mm, "What they are to keep, mm, 0 to 3")
+      ->needs(resolve)
       ->capture_default_str();
   arch->add_option("--e", command->options.tooth.e,
                    "Side of the lattice in mm, 0.2 to 2; new edges are about half of it")

@@ -193,9 +193,12 @@ void add_completion_options(CLI::App& batch, const std::shared_ptr<BatchCommand>
       ->capture_default_str();
   add_unit_option(batch, cases.arch.tooth.millimetres_per_unit,
                   "Unit of files for which the manifest says none: mm, cm, m, um, in");
-  batch.add_flag("--resolve-collisions", cases.arch.resolve_collisions,
-                 "Of arches: turn, bend or shorten roots that come too near to other teeth, by the least change");
-  batch.add_option("--clearance", cases.arch.clearance_mm, "What they are to keep, mm, 0 to 3")->capture_default_str();
+  CLI::Option* resolve =
+      batch.add_flag("--resolve-collisions", cases.arch.resolve_collisions,
+                     "Of arches: turn, bend or shorten roots that come too near to other teeth, by the least change");
+  batch.add_option("--clearance", cases.arch.clearance_mm, "What they are to keep, mm, 0 to 3")
+      ->needs(resolve)
+      ->capture_default_str();
   batch.add_flag("--labels-vtp", cases.labels_vtp,
                  "Of arches: write the labels as labels.vtp, too (cells, FDI numbers)");
   batch.add_flag("--labels-vtk", cases.labels_vtk,

@@ -5,9 +5,12 @@
 // networks", 2016. Panoramas: B. Shi et al., "DeepPano", 2015.
 #include "completion/pose_network.hpp"
 
+#include "base/parallel_tasks.hpp"
 #include "rhizodont/error.hpp"
 #include "teeth/fdi.hpp"
 #include "teeth/frame.hpp"
+
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -61,35 +64,40 @@ PoseNetwork::PoseNetwork(const TensorFile& file)
     throw InputError(std::string(pose_weights) + " do not fit each other.");
 }
 
-PanoramaPose PoseNetwork::operator()(const CrownPanorama& panorama, int type) const {
+PanoramaPose PoseNetwork::operator()(const CrownPanorama& panorama, int type, Columns looked_at) const {
   constexpr Eigen::Index step = PanoramaFeatures::columns_per_place;
-  std::vector<double> likelihood(static_cast<std::size_t>(all_columns));
-  PanoramaPose pose;
   // Strides leave three of four columns without a place: what the network says of the panorama turned by so many fills
   // them, and its leans are averaged.
-  for (Eigen::Index by = 0; by < step; ++by) {
-    const Eigen::MatrixXf around = convolved_around(features_(turned(panorama, by)), around_);
-    const Eigen::MatrixXd said = ((said_.weight.middleRows(said_of_type * type, said_of_type) * around).colwise() +
-                                  said_.bias.segment(said_of_type * type, said_of_type))
-                                     .cast<double>();
-    const Eigen::ArrayXd shares = (said.row(0).array() - said.row(0).maxCoeff()).exp().transpose();
-    for (Eigen::Index p = 0; p < said.cols(); ++p) {
-      const Eigen::Index column = (step * p + by) % all_columns;
-      likelihood[static_cast<std::size_t>(column)] = shares[p] / shares.sum();
-      const double cosine = std::cos(column_azimuth(column)), sine = std::sin(column_azimuth(column));
-      pose.form_axis +=
-          Eigen::Vector2d(cosine * said(1, p) - sine * said(2, p), sine * said(1, p) + cosine * said(2, p)) /
-          static_cast<double>(step);
+  const Eigen::Index turns = looked_at == Columns::all ? step : 1;
+  std::vector<Eigen::MatrixXd> said(static_cast<std::size_t>(turns));
+  parallel_tasks(said.size(), [&](std::size_t by) {
+    const Eigen::MatrixXf around =
+        convolved_around(features_(turned(panorama, static_cast<Eigen::Index>(by))), around_);
+    said[by] = ((said_.weight.middleRows(said_of_type * type, said_of_type) * around).colwise() +
+                said_.bias.segment(said_of_type * type, said_of_type))
+                   .cast<double>();
+  });
+  std::vector<double> likelihood(static_cast<std::size_t>(all_columns));
+  PanoramaPose pose;
+  for (Eigen::Index by = 0; by < turns; ++by) {
+    const Eigen::MatrixXd& here = said[static_cast<std::size_t>(by)];
+    const Eigen::ArrayXd shares = (here.row(0).array() - here.row(0).maxCoeff()).exp().transpose();
+    for (Eigen::Index place = 0; place < here.cols(); ++place) {
+      const Eigen::Index column = (step * place + by) % all_columns;
+      likelihood[static_cast<std::size_t>(column)] = shares[place] / shares.sum();
+      const Eigen::Rotation2Dd turn(column_azimuth(column));
+      pose.form_axis += turn * here.col(place).tail<2>() / static_cast<double>(turns);
     }
   }
   pose.azimuth = middle_of_peak(likelihood);
   return pose;
 }
 
-CrownPose PoseNetwork::seen_along(const TriangleMesh& open_crown, const Eigen::Vector3d& axis, int fdi) const {
+CrownPose PoseNetwork::seen_along(const TriangleMesh& open_crown, const Eigen::Vector3d& axis, int fdi,
+                                  Columns looked_at) const {
   const CrownPanorama panorama = crown_panorama(open_crown, axis, panorama_centre(open_crown, axis));
   const bool right_side = is_right_side(fdi);
-  PanoramaPose pose = (*this)(right_side ? mirrored(panorama) : panorama, tooth_type_of_fdi(fdi));
+  PanoramaPose pose = (*this)(right_side ? mirrored(panorama) : panorama, tooth_type_of_fdi(fdi), looked_at);
   if (right_side) pose.azimuth = -pose.azimuth, pose.form_axis.y() = -pose.form_axis.y();
   const Eigen::Matrix3d to_world = panorama_view(axis).transpose();
   constexpr double longest = 0.9;
@@ -102,8 +110,8 @@ CrownPose PoseNetwork::seen_along(const TriangleMesh& open_crown, const Eigen::V
 CrownPose PoseNetwork::pose_of(const TriangleMesh& open_crown, int fdi) const {
   const Eigen::Vector3d border_axis = growth_axis(open_crown);
   // Borders lean: what is seen along the form's own axis, once that is roughly known, is more alike.
-  const Eigen::Vector3d axis = seen_along(open_crown, border_axis, fdi).form_axis;
-  CrownPose pose = seen_along(open_crown, axis, fdi);
+  const Eigen::Vector3d axis = seen_along(open_crown, border_axis, fdi, Columns::every_fourth).form_axis;
+  CrownPose pose = seen_along(open_crown, axis, fdi, Columns::all);
   // The cheek's direction is that across the border's axis which is seen there.
   pose.buccal = (axis.dot(border_axis) * pose.buccal - pose.buccal.dot(border_axis) * axis).normalized();
   return pose;

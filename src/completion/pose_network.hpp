@@ -35,8 +35,11 @@ class PoseNetwork {
   /// Takes the weights out of a file (models/pose.md). Throws InputError if one is missing or of another size.
   explicit PoseNetwork(const TensorFile& file);
 
-  /// Of a left tooth's panorama. Deterministic. @param type 0..15
-  PanoramaPose operator()(const CrownPanorama& panorama, int type) const;
+  /// At which of a panorama's columns places are looked at.
+  enum class Columns { every_fourth, all };
+
+  /// Of a left tooth's panorama. The same for any number of threads. @param type 0..15
+  PanoramaPose operator()(const CrownPanorama& panorama, int type, Columns looked_at = Columns::all) const;
 
   /// Looks at an open crown (mm) from amid its base along its border's growth axis, and once more along the form's axis
   /// that it found. The cheek is across the border's axis. Throws UsageError for other numbers
@@ -46,7 +49,7 @@ class PoseNetwork {
   const std::map<std::string, std::string>& metadata() const { return metadata_; }
 
  private:
-  CrownPose seen_along(const TriangleMesh& open_crown, const Eigen::Vector3d& axis, int fdi) const;
+  CrownPose seen_along(const TriangleMesh& open_crown, const Eigen::Vector3d& axis, int fdi, Columns looked_at) const;
 
   PanoramaFeatures features_;
   PanoramaLayer around_, said_;

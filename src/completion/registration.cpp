@@ -323,9 +323,14 @@ CrownFrame canonical_frame(const PreparedCrown& crown, int fdi, const MeanCrown&
   const OrientedPoints points = surface_points(crown.mesh);
   const Point centre = area_centroid(crown.mesh);
   if (!directions && !seen) return frame_from(points, crown.growth_axis, centre, right_side, mean, options);
-  CrownFrame found = frame_near(points, crown.growth_axis, centre, right_side,
-                                directions ? directions->buccal : seen->buccal, mean, options);
-  if (seen && !directions) found.frame = facing(found.frame, seen->buccal);
+  CrownFrame found;
+  if (directions) {
+    found = frame_near(points, crown.growth_axis, centre, right_side, directions->buccal, mean, options);
+  } else {
+    const CanonicalFrame upright = facing(upright_frame(crown.growth_axis, centre, right_side), seen->buccal);
+    found.frame = upright;
+    found.residual_mm = crown_frame(lay(points, upright, mean, {Eigen::Matrix3d::Identity()}, options)).residual_mm;
+  }
   if (seen) found.form_axis = form_axis_along(found.frame.direction_to_canonical(seen->form_axis));
   // The form's lean is against an axis that knows of the tooth's place, not against a border alone: two estimates of
   // one axis, each taken for half (measured in docs/arches.md).

@@ -123,6 +123,7 @@ TEST_F(Arch, WrongUseAndBadInputAreSaidInOneLine) {
   expect_error("arch crowns -o out --root-length 36", 2, "36=14.2");
   expect_error("arch crowns -o out --root-length 47=14", 2, "47");
   expect_error("arch crowns -o out --labels-are roman", 2, "roman");
+  expect_error("arch crowns -o out --clearance 0.3", 2, "--resolve-collisions");
   expect_error("arch crowns/LL6.ply -o out", 3, "A single crown goes to complete");
   expect_error("arch missing.ply -o out", 3, "missing.ply");
   expect_error("arch crowns/LL6.ply --labels none.json -o out", 3, "none.json");
