@@ -130,12 +130,17 @@ Eigen::Matrix3d panorama_view(const Eigen::Vector3d& axis) {
 }
 
 Point panorama_centre(const TriangleMesh& open_crown, const Eigen::Vector3d& axis) {
-  double height = 0, length = 0;
   const EdgeTable edges = edge_table(open_crown);
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (edges.triangle_count(e) != 1) continue;
-    const Point& a = open_crown.vertices[static_cast<std::size_t>(edges.vertices[e][0])];
-    const Point& b = open_crown.vertices[static_cast<std::size_t>(edges.vertices[e][1])];
+  std::vector<int> border;  // half-edges
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    if (edges.triangle_count(e) == 1) border.push_back(edges.half_edges[static_cast<std::size_t>(edges.first[e])]);
+  std::sort(border.begin(),
+            border.end());  // so that the numbers of the vertices have no say in how the sums are rounded
+  double height = 0, length = 0;
+  for (const int h : border) {
+    const Triangle& t = open_crown.triangles[static_cast<std::size_t>(h / 3)];
+    const Point& a = open_crown.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>(h % 3)])];
+    const Point& b = open_crown.vertices[static_cast<std::size_t>(t[static_cast<std::size_t>((h + 1) % 3)])];
     const double l = (b - a).norm();
     height += l * axis.dot(0.5 * (a + b)), length += l;
   }
