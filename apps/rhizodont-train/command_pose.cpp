@@ -40,6 +40,7 @@ void run(const PoseCommand& command) {
   options.progress = progress_of(command.said);
   TensorFile weights = train_pose(panoramas, options);
   const PoseErrors errors = pose_errors(families, PoseNetwork(weights), command.held_out);
+  weights.metadata["content"] = "A network that tells how a crown stands (models/pose.md)";
   weights.metadata["training.panoramas"] = std::to_string(panoramas.azimuths.size());
   weights.metadata["training.steps"] = std::to_string(options.steps);
   weights.metadata["attribution"] =

@@ -75,7 +75,8 @@ Outcome lay_and_predict(const ToothFamilies& families, const CompletionModels& m
   outcome.lean = degrees * std::asin(std::min(1.0, truth.form_axis.norm()));
   const Eigen::Vector3d said = laid.frame.direction_to_world(laid.form_direction());
   outcome.lean_off = degrees * std::acos(std::clamp(said.dot(tooth.crown_axis), -1.0, 1.0));
-  truth.form_axis *= std::min(1.0, 0.5 / std::max(1e-9, truth.form_axis.norm()));  // as `CrownFrame` has it
+  truth.form_axis *=
+      std::min(1.0, CrownFrame::longest_form_axis / std::max(1e-9, truth.form_axis.norm()));  // as `CrownFrame` has it
 
   const Eigen::Vector3d up = crown_growth_axis(crown);
   const double level = extent_along(crown.vertices, up).first + overlap_mm;

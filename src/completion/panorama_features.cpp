@@ -95,7 +95,13 @@ PanoramaFeatures::PanoramaFeatures(const TensorFile& file, const std::string& ne
     around_.push_back(panorama_layer(file, "around." + std::to_string(i), 3, network));
 
   Eigen::Index channels = CrownPanorama::channels + 1, rows = CrownPanorama::rows;
-  bool fits = true;
+  // Kernels have a middle, and none is wider than the narrowest map.
+  const auto is_centred = [](const PanoramaLayer& layer) {
+    return layer.kernel_rows % 2 == 1 && layer.kernel_columns % 2 == 1 &&
+           layer.kernel_columns <= static_cast<Eigen::Index>(CrownPanorama::columns) / columns_per_place;
+  };
+  bool fits =
+      std::all_of(maps_.begin(), maps_.end(), is_centred) && std::all_of(around_.begin(), around_.end(), is_centred);
   for (std::size_t i = 0; i < maps_.size(); ++i) {
     fits = fits && maps_[i].inputs == channels;
     channels = maps_[i].weight.rows(), rows /= strides[i];

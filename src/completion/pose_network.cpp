@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 namespace rhizodont {
@@ -57,9 +58,9 @@ double middle_of_peak(const std::vector<double>& likelihood) {
 PoseNetwork::PoseNetwork(const TensorFile& file)
     : features_(file, pose_weights),
       around_(panorama_layer(file, "pose.0", 3, pose_weights)),
-      said_(panorama_layer(file, "pose.1", 2, pose_weights)),
-      metadata_(file.metadata) {
-  if (around_.inputs != features_.channels() || said_.inputs != around_.weight.rows() ||
+      said_(panorama_layer(file, "pose.1", 2, pose_weights)) {
+  if (around_.kernel_columns % 2 == 0 || around_.kernel_columns > all_columns / PanoramaFeatures::columns_per_place ||
+      around_.inputs != features_.channels() || said_.inputs != around_.weight.rows() ||
       said_.weight.rows() != said_of_type * tooth_type_count)
     throw InputError(std::string(pose_weights) + " do not fit each other.");
 }
@@ -77,6 +78,8 @@ PanoramaPose PoseNetwork::operator()(const CrownPanorama& panorama, int type, Co
                 said_.bias.segment(said_of_type * type, said_of_type))
                    .cast<double>();
   });
+  for (const Eigen::MatrixXd& here : said)
+    if (!here.allFinite()) throw InputError(std::string(pose_weights) + " are damaged: what they say is no number.");
   std::vector<double> likelihood(static_cast<std::size_t>(all_columns));
   PanoramaPose pose;
   for (Eigen::Index by = 0; by < turns; ++by) {

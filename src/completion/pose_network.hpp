@@ -9,16 +9,13 @@
 
 #include <Eigen/Core>
 
-#include <filesystem>
-#include <map>
-#include <string>
-
 namespace rhizodont {
 
 /// How a crown stands about the axis from which it is looked at.
 struct PanoramaPose {
-  double azimuth = 0;                                   ///< radians: direction towards the cheek (canonical +y)
-  Eigen::Vector2d form_axis = Eigen::Vector2d::Zero();  ///< the form's own axis (unit) along azimuths 0 and 90 degrees
+  double azimuth = 0;  ///< radians: direction towards the cheek (canonical +y)
+  Eigen::Vector2d form_axis =
+      Eigen::Vector2d::Zero();  ///< the form's own axis (about unit) along azimuths 0 and 90 degrees
 };
 
 /// How a crown stands in the world.
@@ -39,6 +36,7 @@ class PoseNetwork {
   enum class Columns { every_fourth, all };
 
   /// Of a left tooth's panorama. The same for any number of threads. @param type 0..15
+  /// Throws InputError where weights are so large that the result is no number.
   PanoramaPose operator()(const CrownPanorama& panorama, int type, Columns looked_at = Columns::all) const;
 
   /// Looks at an open crown (mm) from amid its base along its border's growth axis, and once more along the form's axis
@@ -46,14 +44,11 @@ class PoseNetwork {
   /// than those of permanent teeth, InputError for crowns without area or border.
   CrownPose pose_of(const TriangleMesh& open_crown, int fdi) const;
 
-  const std::map<std::string, std::string>& metadata() const { return metadata_; }
-
  private:
   CrownPose seen_along(const TriangleMesh& open_crown, const Eigen::Vector3d& axis, int fdi, Columns looked_at) const;
 
   PanoramaFeatures features_;
   PanoramaLayer around_, said_;
-  std::map<std::string, std::string> metadata_;
 };
 
 }  // namespace rhizodont

@@ -248,9 +248,10 @@ double turn_about_z(const Laid& laid) {
   return std::atan2(r(1, 0) - r(0, 1), r(0, 0) + r(1, 1));
 }
 
-/// x and y of a unit axis, not too long.
+/// x and y of a unit axis, not too long. What points down was laid, or seen, upside down and tells nothing.
 Eigen::Vector2d form_axis_along(const Eigen::Vector3d& axis) {
-  constexpr double longest = 0.5;
+  if (!(axis.z() > 0)) return Eigen::Vector2d::Zero();
+  constexpr double longest = CrownFrame::longest_form_axis;
   return longest / std::max(axis.head<2>().norm(), longest) * axis.head<2>();
 }
 
@@ -260,9 +261,7 @@ CrownFrame crown_frame(const Laid& laid) {
   CrownFrame result;
   const Eigen::Matrix3d turn = about_z(turn_about_z(laid));
   result.frame = turned_frame(laid.upright, turn);
-  const Eigen::Vector3d up = (turn * r.transpose()).col(2);
-  // What was laid upside down tells nothing.
-  if (up.z() > 0) result.form_axis = form_axis_along(up);
+  result.form_axis = form_axis_along((turn * r.transpose()).col(2));
   result.residual_mm = laid.found.residual / laid.found.at.scale;
   return result;
 }

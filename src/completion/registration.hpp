@@ -33,11 +33,14 @@ struct RegistrationOptions {
 
 /// The canonical frame of an open crown and how well its type's mean crown agrees with it.
 struct CrownFrame {
-  CanonicalFrame frame;    ///< z = growth_axis, centre = area_centroid; rotation about z from the registration
+  static constexpr double longest_form_axis = 0.5;  ///< sine of 30 degrees
+
+  CanonicalFrame frame;    ///< z = growth_axis, centre = area_centroid; rotation about z as laid or seen
   double residual_mm = 0;  ///< as in RigidFit
-  /// x and y, canonical, of the mean crown's growth axis where it lies on this crown: how far the crown's form leans
-  /// against its border. A gum line leans with the gum, a cut across the tooth's long axis with the root. At most 0.5
-  /// long: what seems to lean by more than 30 degrees was laid badly. Half of it where an arch's directions are given.
+  /// x and y, canonical, of the mean crown's growth axis where it lies on this crown, or as that was seen: how far the
+  /// crown's form leans against its border. A gum line leans with the gum, a cut across the tooth's long axis with the
+  /// root. At most `longest_form_axis` long: what seems to lean by more was laid badly. Half of it where an arch's
+  /// directions are given.
   Eigen::Vector2d form_axis = Eigen::Vector2d::Zero();
 
   /// That axis as a unit vector, canonical.
@@ -46,8 +49,9 @@ struct CrownFrame {
 
 /// Canonical pose of an open crown with a known FDI number: axis and centre from the crown itself, rotation about the
 /// axis by registering the crown to the mean crown of its type, within 60 degrees of `directions`' where they are
-/// known, else as the crown was seen to stand (`seen`), whose lean of the form it takes over; the registration then
-/// tells the residual alone. Deterministic. Throws UsageError for an unknown FDI number.
+/// known, else as the crown was seen to stand (`seen`); the registration then tells the residual alone. The lean of the
+/// form is that of `seen`, if there is one; half of it with `directions`. Deterministic. Throws UsageError for an
+/// unknown FDI number.
 CrownFrame canonical_frame(const PreparedCrown& crown, int fdi, const MeanCrown& mean,
                            const RegistrationOptions& options = {},
                            const std::optional<ToothDirections>& directions = {},

@@ -14,7 +14,8 @@ PanoramaView view_from_beside(const TriangleMesh& crown, const Eigen::Vector3d& 
     const double x = random.normal(), y = random.normal(), z = random.normal();
     return Eigen::Vector3d(x, y, z);
   };
-  const Eigen::Vector3d axis = (along + random.normal(0.0, lean) * along.cross(draw()).normalized()).normalized();
+  const Eigen::Vector3d across = along.cross(draw()).normalized();
+  const Eigen::Vector3d axis = (along + random.normal(0.0, lean) * across).normalized();
   return {axis, panorama_centre(crown, axis) + aside_mm * draw()};
 }
 

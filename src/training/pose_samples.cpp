@@ -78,7 +78,10 @@ PosedPanoramas make_posed_panoramas(const ToothFamilies& families, int per_type)
   });
   PosedPanoramas all;
   all.panoramas = {CrownPanorama::channels, CrownPanorama::rows, CrownPanorama::columns, {}, {}};
-  for (std::size_t i = 0; i < of_tooth.size(); ++i)
+  std::size_t count = 0;
+  for (const std::vector<PoseSample>& samples : of_tooth) count += samples.size();
+  all.panoramas.values.reserve(count * CrownPanorama::channels * CrownPanorama::rows * CrownPanorama::columns);
+  for (std::size_t i = 0; i < of_tooth.size(); ++i) {
     for (const PoseSample& sample : of_tooth[i]) {
       std::vector<float>& values = all.panoramas.values;
       values.insert(values.end(), sample.panorama.values.begin(), sample.panorama.values.end());
@@ -86,6 +89,8 @@ PosedPanoramas make_posed_panoramas(const ToothFamilies& families, int per_type)
       all.azimuths.push_back(static_cast<float>(sample.pose.azimuth));
       for (const double lean : sample.pose.form_axis) all.leans.push_back(static_cast<float>(lean));
     }
+    of_tooth[i] = {};
+  }
   return all;
 }
 

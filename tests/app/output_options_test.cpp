@@ -164,7 +164,7 @@ TEST_F(OutputOptionsOfCommands, DoctorDoesNotCallAllWellWhereModelsAreMissing) {
   EXPECT_EQ(doctor.code, 0) << doctor.error;
   EXPECT_EQ(doctor.out.find("All is well"), std::string::npos) << doctor.out;
   EXPECT_NE(doctor.out.find("It works, but"), std::string::npos) << doctor.out;
-  for (const char* name : {"arch", "likeness", "segment", "skirt"})
+  for (const char* name : {"arch", "likeness", "pose", "segment", "skirt"})
     EXPECT_NE(doctor.out.find(std::string("warning: There is no ") + name + ".safetensors"), std::string::npos) << name;
   // as it says of them
   expect_error("complete crown_34.ply -o tooth.ply --models models --skirt auto", 2, "skirt.safetensors");

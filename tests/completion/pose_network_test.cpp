@@ -10,6 +10,7 @@
 #include "teeth/frame.hpp"
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -75,6 +76,15 @@ TEST(PoseNetworkOfCrowns, AMirroredCrownOfTheOtherSideHasTheMirroredPose) {
   }
 }
 
+TEST(PoseNetworkOfCrowns, IsTheSameForAnyNumberOfThreads) {
+  const TriangleMesh crown = posed_sample(16);
+  const CrownPose many = shipped_pose().pose_of(crown, 16);
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const CrownPose single = shipped_pose().pose_of(crown, 16);
+  EXPECT_EQ(many.buccal, single.buccal);
+  EXPECT_EQ(many.form_axis, single.form_axis);
+}
+
 TEST(PoseNetworkOfCrowns, WeightsThatLackALayerOrDoNotFitAreRefused) {
   for (const std::string name : {"maps.0.weight", "around.2.bias", "pose.0.weight", "pose.1.bias"}) {
     TensorFile weights = pose_weights();
@@ -86,6 +96,20 @@ TEST(PoseNetworkOfCrowns, WeightsThatLackALayerOrDoNotFitAreRefused) {
   bias.pop_back();
   weights.tensors["pose.1.bias"] = store_floats(bias, {static_cast<std::int64_t>(bias.size())});
   EXPECT_THROW(PoseNetwork{weights}, InputError);
+  TensorFile wide = pose_weights();
+  const StoredTensor& kernel = wide.tensors.at("around.1.weight");
+  const std::int64_t outputs = kernel.shape[0], inputs = kernel.shape[1];
+  wide.tensors["around.1.weight"] =
+      store_floats(std::vector<float>(static_cast<std::size_t>(outputs * inputs * 17)), {outputs, inputs, 17});
+  EXPECT_THROW(PoseNetwork{wide}, InputError) << "wider than there are places";
+}
+
+TEST(PoseNetworkOfCrowns, WeightsThatSayNoNumberAreRefused) {
+  TensorFile weights = pose_weights();
+  std::vector<float> values = load_floats(weights.tensors.at("pose.1.weight"));
+  for (float& value : values) value = 3e38F;
+  weights.tensors["pose.1.weight"] = store_floats(values, weights.tensors.at("pose.1.weight").shape);
+  EXPECT_THROW(PoseNetwork{weights}.pose_of(posed_sample(36), 36), InputError);
 }
 
 TEST(PoseNetworkOfCrowns, RefusesWhatItCannotLookAt) {

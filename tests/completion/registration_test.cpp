@@ -166,6 +166,14 @@ TEST(CanonicalFrameOfCrowns, aPoseThatWasSeenTellsTurnAndLean) {
     EXPECT_LT((found.frame.direction_to_world(found.form_direction()) - seen.form_axis).norm(), 1e-9) << sample.fdi;
     EXPECT_LT((found.frame.direction_to_world(Eigen::Vector3d::UnitZ()) - crown.growth_axis).norm(), 1e-9);
     EXPECT_NEAR(found.residual_mm, laid.residual_mm, 0.1 * laid.residual_mm) << "that of the crown laid there";
+    // In an arch the neighbours tell the turn, and half of the lean is taken.
+    const ToothDirections directions{crown.growth_axis, laid.frame.direction_to_world(Eigen::Vector3d::UnitY())};
+    const CrownFrame told = canonical_frame(crown, sample.fdi, mean_of(sample.fdi), {}, directions, seen);
+    EXPECT_LT((told.frame.rotation - laid.frame.rotation).norm(), 0.05) << sample.fdi;
+    const Eigen::Vector3d leans = told.frame.direction_to_canonical(seen.form_axis);
+    EXPECT_LT((told.form_axis - leans.head<2>() / 2).norm(), 1e-9) << sample.fdi;
+    const CrownPose upside_down{seen.buccal, -seen.form_axis};
+    EXPECT_EQ(canonical_frame(crown, sample.fdi, mean_of(sample.fdi), {}, {}, upside_down).form_axis.norm(), 0);
   }
 }
 

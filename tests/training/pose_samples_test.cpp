@@ -35,9 +35,9 @@ TEST_F(PoseSamples, ShippedWeightsFindHowOtherCrownsStand) {
   const auto file = std::filesystem::path(RHIZODONT_SOURCE_DIR) / "models" / "pose.safetensors";
   const PoseErrors errors = pose_errors(all_families(), PoseNetwork(read_safetensors(file)), 4);
   EXPECT_GE(errors.crowns, 60U);
-  EXPECT_LE(errors.lost, 0.06);
-  EXPECT_LT(errors.turn, 7) << "degrees";
-  EXPECT_LT(errors.lean, 5) << "degrees; borders lean by 11 against the form";
+  EXPECT_LE(errors.lost, 0.02);
+  EXPECT_LT(errors.turn, 2.8) << "degrees";
+  EXPECT_LT(errors.lean, 4.7) << "degrees; borders lean by 11 against the form";
 }
 
 }  // namespace
