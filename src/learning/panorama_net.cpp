@@ -72,7 +72,7 @@ PanoramaTrunkImpl::PanoramaTrunkImpl(std::int64_t channels, std::int64_t rows, i
   }
   channels *= rows;
   for (const std::int64_t kernel : kernels) {
-    around->push_back(nn::Conv1d(nn::Conv1dOptions(channels, 6 * width, kernel).bias(false)));
+    around->push_back(nn::Conv1d(nn::Conv1dOptions(channels, std::int64_t{6} * width, kernel).bias(false)));
     channels = std::int64_t{6} * width;
     around_norms->push_back(nn::BatchNorm1d(channels));
   }
