@@ -73,14 +73,14 @@ TEST_F(PeopleCalibrationOfOneType, CorrectsLengthsWhateverTheWeightsSaidBefore) 
 
   const PeopleCalibration again = calibrate_on_people(families, corrected, options);
   // but for the one completed tooth's surface, whose lattice lies elsewhere on a root of another length
-  EXPECT_NEAR(again.correction_mm.at(fdi), found.correction_mm.at(fdi), 0.03);
+  EXPECT_NEAR(again.correction_mm.at(fdi), found.correction_mm.at(fdi), 0.05);
   EXPECT_NEAR(again.types.at(fdi).length_low, found.types.at(fdi).length_low, 0.03);
   EXPECT_NEAR(again.types.at(fdi).apex, found.types.at(fdi).apex, 0.03);
   EXPECT_NEAR(again.all.surface, found.all.surface, 0.1 * found.all.surface);
 
   const double bias = found.bias_mm.at(fdi);
   options.largest_bias_mm = std::abs(bias) / 2;
-  EXPECT_NEAR(calibrate_on_people(families, corrected, options).correction_mm.at(fdi), -bias / 2, 0.03)
+  EXPECT_NEAR(calibrate_on_people(families, corrected, options).correction_mm.at(fdi), -bias / 2, 0.05)
       << "to where it may be, and no further";
   options.largest_bias_mm = std::abs(bias) + 1;
   EXPECT_TRUE(calibrate_on_people(families, corrected, options).correction_mm.empty()) << "small enough as it is";
